@@ -1,0 +1,170 @@
+"""How a section of the configuration is declared, and how a slip in one is told.
+
+A section is a frozen pydantic model that refuses unknown keys. A field declared with `quantity`
+takes text with a unit and holds a float in the unit that the field states.
+"""
+
+import difflib
+from collections.abc import Iterable, Mapping
+from typing import Any, ClassVar, TypeVar, get_args
+
+from pydantic import BaseModel, ConfigDict, Field, ValidationError, ValidationInfo, field_validator
+from pydantic.fields import FieldInfo
+
+from gearmesh import units
+from gearmesh.errors import InputError
+
+_SHOWN = 60  # characters of a wrong value that a message repeats
+_EXPECTED = {
+    "model_type": "allowed is a mapping of keys to values",
+    "dict_type": "allowed is a mapping of keys to values",
+    "tuple_type": "allowed is a list",
+    "string_type": "allowed is a text",
+    "int_from_float": "allowed is a whole number",
+}
+
+
+def quantity(unit: str, symbol: str, description: str, low: float, high: float) -> Any:
+    """Declare a quantity that is stored in `unit` and lies between `low` and `high`."""
+    extra = {"unit": unit, "symbol": symbol, "low": low, "high": high}
+    return Field(description=description, json_schema_extra=extra)
+
+
+class Section(BaseModel):
+    """Base of all sections: frozen, no unknown keys, quantities read with their units."""
+
+    model_config: ClassVar[ConfigDict] = ConfigDict(frozen=True, extra="forbid")
+
+    @field_validator("*", mode="before")
+    @classmethod
+    def _read_quantity(cls, value: object, info: ValidationInfo) -> object:
+        declared = cls.model_fields[info.field_name].json_schema_extra
+        return _read(value, declared) if isinstance(declared, Mapping) else value
+
+
+def _read(value: object, declared: Mapping[str, Any]) -> object:
+    """Read a quantity, or (nested) lists of them, and check the range."""
+    if isinstance(value, list | tuple):
+        return tuple(_read(item, declared) for item in value)
+    unit, low, high = declared["unit"], declared["low"], declared["high"]
+    number = units.parse(value, unit)
+    if not low <= number <= high:
+        raise ValueError(f"out of range; allowed is {_range(low, high, unit)}")
+    return number
+
+
+def _range(low: float, high: float, unit: str) -> str:
+    return f"{low:g} to {high:g}" + ("" if unit == "1" else f" {unit}")
+
+
+Model = TypeVar("Model", bound=BaseModel)
+
+
+def validate(model: type[Model], data: object, where: str, changed: Mapping[str, str]) -> Model:
+    """Build `model` from plain data.
+
+    Parameters
+    ----------
+    model : type of Section
+        What to build.
+    data : object
+        Nested mappings, as read from a file.
+    where : str
+        What the data came from, for messages; may be empty.
+    changed : mapping of str to str
+        Dotted keys whose value came from elsewhere, and from where.
+
+    Raises
+    ------
+    InputError
+        One line with the first slip, and how many more there are.
+    """
+    try:
+        return model.model_validate(data)
+    except ValidationError as error:
+        slips = _slips(model, data, error)
+    key, text = slips[0]
+    origin = next((o for k, o in changed.items() if f"{key}.".startswith(f"{k}.")), where)
+    more = f" (and {len(slips) - 1} more)" if len(slips) > 1 else ""
+    raise InputError(": ".join(part for part in (origin, key, text) if part) + more) from None
+
+
+def nearest(word: str, choices: Iterable[str]) -> str:
+    """Return ``" (did you mean …?)"`` with the choice that is most like `word`, or nothing."""
+    close = difflib.get_close_matches(word, list(choices), n=1, cutoff=0.6)
+    return f" (did you mean '{close[0]}'?)" if close else ""
+
+
+def shown(value: object) -> str:
+    """Write a value that was found, in one short line."""
+    if value is None:
+        return "nothing"
+    if isinstance(value, Mapping):
+        return "a mapping"
+    if isinstance(value, list | tuple):
+        return "a list"
+    try:
+        text = repr(value)
+    except ValueError:  # an integer with thousands of digits
+        text = "a huge number"
+    return text if len(text) <= _SHOWN else text[:_SHOWN] + "…"
+
+
+def _slips(model: type[BaseModel], data: object, error: ValidationError) -> list[tuple[str, str]]:
+    """Return (key, what is wrong with it) for every slip: unknown keys first, missing ones last."""
+    unknown, wrong, missing = [], [], []
+    for item in error.errors(include_url=False, include_input=False):
+        loc = item["loc"]
+        key = ".".join(str(part) for part in loc)
+        if item["type"] == "extra_forbidden":
+            choices = _keys(model, loc[:-1])
+            hint = nearest(str(loc[-1]), choices) or f"; allowed are {', '.join(choices)}"
+            unknown.append((key, f"unknown key{hint}"))
+        elif item["type"] == "missing":
+            missing.append((key, f"missing{_purpose(model, loc)}"))
+        else:
+            reason = _EXPECTED.get(item["type"], item["msg"]).removeprefix("Value error, ")
+            found = _at(data, loc)
+            about_section = item["type"] == "value_error" and isinstance(found, Mapping)
+            wrong.append((key, reason if about_section else f"found {shown(found)}: {reason}"))
+    suggested = " ".join(text for _, text in unknown)
+    missing = [(k, t) for k, t in missing if f"'{k.rpartition('.')[2]}'" not in suggested]
+    return unknown + wrong + missing
+
+
+def _field(model: type[BaseModel], loc: tuple[int | str, ...]) -> FieldInfo | None:
+    """Find the declaration of a key, through nested sections."""
+    for i, part in enumerate(loc):
+        info = model.model_fields.get(str(part))
+        if info is None or i == len(loc) - 1:
+            return info
+        inner = _section(info)
+        if inner is None:
+            return info
+        model = inner
+    return None
+
+
+def _section(info: FieldInfo) -> type[BaseModel] | None:
+    types = (info.annotation, *get_args(info.annotation))
+    return next((t for t in types if isinstance(t, type) and issubclass(t, BaseModel)), None)
+
+
+def _keys(model: type[BaseModel], loc: tuple[int | str, ...]) -> list[str]:
+    info = _field(model, loc) if loc else None
+    inner = _section(info) if info else model
+    return list(inner.model_fields) if inner else []
+
+
+def _purpose(model: type[BaseModel], loc: tuple[int | str, ...]) -> str:
+    info = _field(model, loc)
+    return f"; wanted is {info.description}" if info and info.description else ""
+
+
+def _at(data: object, loc: tuple[int | str, ...]) -> object:
+    for part in loc:
+        try:
+            data = data[part]
+        except (KeyError, IndexError, TypeError):
+            return data
+    return data

@@ -1,0 +1,114 @@
+"""Quantities with units: text in, a float in a stated unit out.
+
+Only the plain form "number unit" is read (``"40 um"``, ``"3.123e-3 N s^2/mm"``), so that a
+configuration is data: nothing in it is evaluated.
+"""
+
+import math
+import re
+from functools import cache
+
+import pint
+
+_NUMBER = r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?"
+_POWER = r"(?:\s*(?:\^|\*\*)\s*[+-]?\d|[²³])?"
+_FACTOR = rf"[A-Za-zµμ°%]+{_POWER}"
+_FACTORS = rf"{_FACTOR}(?:(?:\s*[*/·]\s*|\s+){_FACTOR})*"
+_UNIT = rf"{_FACTORS}(?:\s*/\s*\(\s*{_FACTORS}\s*\))?"
+_QUANTITY = re.compile(rf"\s*(?P<number>{_NUMBER})\s*(?P<unit>{_UNIT})?\s*")
+_LONGEST = 80  # characters: no quantity needs more, and the pattern above stays fast
+
+_NAMES = {
+    "1": "a plain number",
+    "rad": "an angle",
+    "mm": "a length",
+    "kg": "a mass",
+    "N": "a force",
+    "N/mm": "a stiffness",
+    "N*s/mm": "a damping coefficient",
+}
+
+
+@cache
+def registry() -> pint.UnitRegistry:
+    """Return the one registry of units (built on first use: that takes a moment)."""
+    return pint.UnitRegistry()
+
+
+def parse(value: object, unit: str) -> float:
+    """Read a quantity and give it in `unit`.
+
+    Parameters
+    ----------
+    value : str, int or float
+        ``"40 um"``, or a bare number where `unit` is ``"1"``.
+    unit : str
+        Unit of the result; ``"1"`` for a plain number.
+
+    Returns
+    -------
+    float
+        Value in `unit`, rounded to 15 digits: ``"10 um"`` and ``"0.01 mm"`` are one number.
+
+    Raises
+    ------
+    ValueError
+        If the text is no quantity, not finite, has no unit or one of another dimension; the
+        message says what is wanted.
+    """
+    if isinstance(value, bool) or not isinstance(value, str | int | float):
+        raise ValueError(f"not a quantity; wanted is {wanted(unit)}")
+    if isinstance(value, str):
+        number, given = _split(value, unit)
+    else:
+        number, given = _finite(value, unit), None
+    if given is None and unit != "1":
+        raise ValueError(f"unit missing; wanted is {wanted(unit)}")
+    if given == "%" and unit == "1":
+        number /= 100.0
+    elif given is not None:
+        number = _convert(number, given, unit)
+    return float(f"{number:.15g}") + 0.0  # no negative zero
+
+
+def wanted(unit: str) -> str:
+    """Describe in words the quantities that `unit` measures, with an example."""
+    name = _NAMES.get(unit, "a quantity")
+    return name if unit == "1" else f"{name} with its unit, such as '1 {unit}'"
+
+
+def _split(text: str, unit: str) -> tuple[float, str | None]:
+    """Take a text apart into its number and its unit (None if there is none)."""
+    match = _QUANTITY.fullmatch(text) if len(text) <= _LONGEST else None
+    if match is None:
+        raise ValueError(f"not a quantity; wanted is {wanted(unit)}")
+    return _finite(float(match["number"]), unit), match["unit"]
+
+
+def _finite(number: float, unit: str) -> float:
+    try:
+        number = float(number)
+    except OverflowError:
+        number = math.inf
+    if not math.isfinite(number):
+        raise ValueError(f"not finite; wanted is {wanted(unit)}")
+    return number
+
+
+def _convert(number: float, given: str, unit: str) -> float:
+    """Convert between units of the same kind (an angle is no plain number)."""
+    if unit == "1":
+        raise ValueError(f"unit '{given}' where none belongs; wanted is {wanted(unit)}")
+    units = registry()
+    try:
+        source = units.parse_units(given.replace("°", "deg").replace("·", "*"))
+        target = units.parse_units(unit)
+        factor, root = units.get_base_units(source)
+        target_factor, target_root = units.get_base_units(target)
+    except pint.UndefinedUnitError:
+        raise ValueError(f"unknown unit '{given}'; wanted is {wanted(unit)}") from None
+    except (pint.PintError, ArithmeticError, ValueError, TypeError, AttributeError):
+        raise ValueError(f"unit '{given}' cannot be read; wanted is {wanted(unit)}") from None
+    if root != target_root:
+        raise ValueError(f"unit '{given}' is of another kind; wanted is {wanted(unit)}")
+    return _finite(number * (factor / target_factor), unit)
