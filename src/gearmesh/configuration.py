@@ -66,12 +66,11 @@ class Frequencies(Section):
             raise ValueError("no frequency; allowed are start, stop and step, values, or both")
         if not lacking and self.stop < self.start:
             raise ValueError(
-                f"stop {self.stop:g} lies below start {self.start:g}; allowed is start to {NU_MAX:g}"
+                f"stop {self.stop:g} is below start {self.start:g}; allowed is start to {NU_MAX:g}"
             )
-        if self._count() + len(self.values) > MAX_CASES:
-            raise ValueError(
-                f"{self._count() + len(self.values)} frequencies; allowed are at most {MAX_CASES}"
-            )
+        count = self._count() + len(self.values)
+        if count > MAX_CASES:
+            raise ValueError(f"{count} frequencies; allowed are at most {MAX_CASES}")
         seen = set(self._grid())
         for nu in self.values:
             if nu in seen:

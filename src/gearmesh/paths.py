@@ -1,0 +1,52 @@
+"""Every place that others rely on, once; all relative to the project's root."""
+
+from pathlib import Path
+
+from gearmesh.configuration import nu_label
+
+CONFIG = Path("config")
+PAPER = CONFIG / "paper.yaml"
+SMOKE = CONFIG / "smoke.yaml"
+CLAIMS = CONFIG / "claims.yaml"
+NOTEBOOKS = Path("notebooks")
+
+RESULTS = Path("results")
+CASES = RESULTS / "cases"
+DATASETS = RESULTS / "datasets"
+RESONANCE = DATASETS / "resonance.nc"
+BIFURCATION = DATASETS / "bifurcation.nc"
+FIGURES = RESULTS / "figures"
+EXECUTED_NOTEBOOKS = RESULTS / "notebooks"
+CHECKS = RESULTS / "checks"
+LEDGER = RESULTS / "claims.json"
+REPORT = RESULTS / "report" / "index.html"
+
+FIGURE_NAMES = tuple(f"fig{number}" for number in range(1, 8))
+"""All figures; the first is a drawing, the others come from the notebook of their name."""
+
+NOTEBOOK_NAMES = FIGURE_NAMES[1:]
+
+
+def case_file(variant: str, nu: float) -> Path:
+    """Return the file of one case, such as ``results/cases/c-material/nu-0.6600.nc``."""
+    return CASES / variant / f"nu-{nu_label(nu)}.nc"
+
+
+def figure_files(name: str) -> tuple[Path, Path]:
+    """Return the PNG and the SVG file of a figure."""
+    return FIGURES / f"{name}.png", FIGURES / f"{name}.svg"
+
+
+def notebook(name: str) -> Path:
+    """Return a notebook's source, without outputs."""
+    return NOTEBOOKS / f"{name}.ipynb"
+
+
+def executed_notebook(name: str) -> Path:
+    """Return a notebook's executed copy."""
+    return EXECUTED_NOTEBOOKS / f"{name}.ipynb"
+
+
+def check_file(name: str) -> Path:
+    """Return the results of the checks that a notebook makes."""
+    return CHECKS / f"{name}.json"
