@@ -1,0 +1,54 @@
+"""Mesh stiffness: the rectangular wave, its Fourier series (4) and its mean (5).
+
+The functions take the mesh phase, the time in mesh periods T = 2 pi / omega_c with phase 0 where
+t = 0 in eq. (4). Two pairs of teeth carry (C_max) while the phase is within (epsilon - 1) / 2 of a
+whole number, one pair (C_min) in between. Stiffnesses come out in the unit that C_max and C_min
+have.
+"""
+
+import numpy as np
+
+
+def duty(contact_ratio: float) -> float:
+    """Return the share of the mesh period with two pairs of teeth in contact, epsilon - 1."""
+    return contact_ratio - 1.0
+
+
+def switch_phases(contact_ratio: float) -> tuple[float, float]:
+    """Return the phases in <0; 1> where C falls to C_min and where it rises to C_max again."""
+    half = 0.5 * duty(contact_ratio)
+    return half, 1.0 - half
+
+
+def in_double_contact(phase, contact_ratio: float):
+    """Return whether two pairs of teeth carry at `phase`, a float or an array."""
+    return np.abs(phase - np.round(phase)) < 0.5 * duty(contact_ratio)
+
+
+def mean(contact_ratio: float, maximum: float, minimum: float) -> float:
+    """Return the mean stiffness C_s of eq. (5)."""
+    return minimum + 0.5 * (maximum - minimum) * (1.0 + (2.0 * contact_ratio - 3.0))
+
+
+def rectangular(phase, contact_ratio: float, maximum: float, minimum: float):
+    """Return the stiffness at `phase`, a float or an array: the sum of eq. (4) in closed form.
+
+    Its n-th coefficient, 2 (C_max - C_min) sin(n pi (epsilon - 1)) / (n pi), is that of a
+    rectangular wave of duty epsilon - 1 centred on phase 0.
+    """
+    return np.where(in_double_contact(phase, contact_ratio), maximum, minimum)
+
+
+def fourier_amplitudes(contact_ratio: float, maximum: float, minimum: float, terms: int):
+    """Return the amplitudes of cos(n omega_c t) in eq. (4), shape (terms,), n = 1 first."""
+    n = np.arange(1, terms + 1)
+    sine = np.sin(n * ((contact_ratio - 2.0) * np.pi))
+    return 0.5 * (maximum - minimum) * 4.0 / (np.pi * n) * (-1.0) ** n * sine
+
+
+def fourier(phase, contact_ratio: float, maximum: float, minimum: float, terms: int):
+    """Return the stiffness at `phase`, a float or an array, by eq. (4) cut after `terms` terms."""
+    n = np.arange(1, terms + 1)
+    waves = np.cos(2.0 * np.pi * n * np.asarray(phase)[..., None])
+    amplitudes = fourier_amplitudes(contact_ratio, maximum, minimum, terms)
+    return mean(contact_ratio, maximum, minimum) + waves @ amplitudes
