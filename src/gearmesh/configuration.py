@@ -113,6 +113,14 @@ class StrongDamping(Section):
     factor: float = quantity("1", "k'/k", "factor on the damping", 1e-3, 1e3)
     nu: Frequencies = Field(description="its frequencies")
 
+    @model_validator(mode="after")
+    def _is_another_variant(self) -> Self:
+        if self.strong_variant.name in VARIANTS:
+            raise ValueError(f"factor is {self.factor:g}; allowed is any other than 1")
+        if self.strong_variant.powers_label == "":
+            raise ValueError(f"{self.variant} has no damping; allowed is a variant that has")
+        return self
+
     @property
     def strong_variant(self) -> Variant:
         """The variant with its factor."""

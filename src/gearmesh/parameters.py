@@ -13,7 +13,8 @@ from typing import Self
 
 from pydantic import model_validator
 
-from gearmesh.damping import Variant
+from gearmesh import stiffness
+from gearmesh.damping import Variant, coefficients
 from gearmesh.motion import Problem
 from gearmesh.schema import Section, quantity, validate
 
@@ -121,8 +122,9 @@ class Parameters(Section):
     @property
     def stiffness_mean(self) -> float:
         """C_s in N/mm, eq. (5)."""
-        kappa, c_max = self.printed.stiffness_ratio, self.printed.mesh_stiffness_max
-        return kappa * c_max + c_max * (1 - kappa) / 2 * (1 + (2 * self.printed.contact_ratio - 3))
+        return stiffness.mean(
+            self.printed.contact_ratio, self.printed.mesh_stiffness_max, self.stiffness_min
+        )
 
     @property
     def natural_frequency(self) -> float:
@@ -171,15 +173,15 @@ class Parameters(Section):
         nu : float
             Tuning ν_s = ω_c/Ω_s of the mesh frequency.
         """
-        y_st, c_s = self.assumed.static_deflection, self.stiffness_mean
-        a = self.assumed
+        a, y_st, c_s = self.assumed, self.assumed.static_deflection, self.stiffness_mean
+        damping = (self.damping_ratio * variant.factor, a.damping_length / y_st)
         return Problem(
             nu=nu,
             contact_ratio=self.printed.contact_ratio,
             stiffness_max=self.printed.mesh_stiffness_max / c_s,
             stiffness_min=self.stiffness_min / c_s,
-            material=self._damping_terms(variant.material_powers, variant.factor),
-            lubricant=self._damping_terms(variant.lubricant_powers, variant.factor),
+            material=coefficients(variant.material_powers, *damping),
+            lubricant=coefficients(variant.lubricant_powers, *damping),
             backlash=a.backlash / y_st,
             body_mass=a.body_mass / self.printed.reduced_mass,
             bearing_stiffness=a.bearing_stiffness / c_s,
@@ -197,14 +199,6 @@ class Parameters(Section):
             revolutions=self.run.revolutions,
             kept_revolutions=self.run.kept_revolutions,
         )
-
-    def _damping_terms(
-        self, powers: tuple[bool, bool, bool], factor: float
-    ) -> tuple[float, float, float]:
-        """Return the coefficients of v, |v| v and v³ in eq. (7), in units of C_s y_st."""
-        reach = self.assumed.static_deflection / self.assumed.damping_length
-        linear, quadratic, cubic = (2 * self.damping_ratio * factor * on for on in powers)
-        return linear, quadratic * reach, cubic * reach**2
 
     def replace(self, changes: Mapping[str, object]) -> "Parameters":
         """Return a copy with other values, such as ``{"assumed.backlash": "40 um"}``.

@@ -1,0 +1,65 @@
+# Every target sets up what it needs; the environment is made again only when its lock changes.
+PYTHON ?= python3
+CORES ?= $(shell nproc 2>/dev/null || echo 2)
+
+BIN := .venv/bin
+STAMP := .venv/.installed
+BENCH_STAMP := .venv/.installed-bench
+PIP := $(BIN)/python -m pip install --quiet --disable-pip-version-check
+# Nothing without a hash is ever installed, so the few packages that come as sources are built
+# with the setuptools of the lock instead of one that pip would fetch for the purpose.
+LOCKED := $(PIP) --require-hashes --no-build-isolation
+SNAKEMAKE := $(BIN)/snakemake --profile workflow/profiles/default --cores $(CORES)
+UV_COMPILE := uv pip compile --quiet --universal --python-version 3.11 --fork-strategy fewest \
+	--generate-hashes --no-annotate --no-header --no-emit-index-url
+
+.PHONY: help reproduce test bench lint identify lock clean
+.DELETE_ON_ERROR:
+
+help: ## show this list
+	@sed -nE 's/^([a-z]+):.*## (.*)/make \1\t\2/p' $(MAKEFILE_LIST) | expand -t 18
+
+reproduce: $(STAMP) ## the paper: cases, datasets, figures, ledger and report
+	$(SNAKEMAKE)
+
+test: $(STAMP) ## the whole test suite
+	$(BIN)/python -m pytest
+
+bench: $(BENCH_STAMP) ## the benchmarks, peers side by side
+	$(BIN)/python -m benchmarks
+
+lint: $(STAMP) ## formats and slips; notebooks without outputs
+	$(BIN)/ruff check .
+	$(BIN)/ruff format --check .
+	$(BIN)/snakefmt --check Snakefile workflow
+	$(BIN)/python .ci/lint_workflow.py
+	$(BIN)/python .ci/lint_notebooks.py
+
+identify: $(STAMP) ## infer the open parameters from the claims
+	$(SNAKEMAKE) identify
+
+lock: ## resolve the requirements again (needs uv)
+	$(UV_COMPILE) requirements.in requirements-dev.in --output-file requirements.lock
+	$(UV_COMPILE) requirements-bench.in --constraints requirements.lock \
+		--output-file requirements-bench.lock
+
+clean: ## remove the results and the environment
+	rm -rf .venv .snakemake results/*/ results/*.json
+
+$(STAMP): requirements.lock
+	@echo "making the environment in .venv (a minute or two)"
+	@$(PYTHON) -c 'import sys; sys.version_info >= (3, 11) or sys.exit("Python 3.11 or later is \
+	needed, this is " + sys.version.split()[0] + "; try make PYTHON=python3.12")'
+	@$(PYTHON) -m venv --clear .venv
+	@sed -n '/^setuptools==/,/[^\\]$$/p' requirements.lock >.venv/first.txt
+	@$(LOCKED) -r .venv/first.txt
+	@$(LOCKED) -r requirements.lock
+	@$(PIP) --no-index --no-deps --no-build-isolation --editable .
+	@touch $@
+
+# numbalsoda is built from source by tools that this lock names too: they come first.
+$(BENCH_STAMP): $(STAMP) requirements-bench.lock
+	@sed '/^numbalsoda==/,/[^\\]$$/d' requirements-bench.lock >.venv/first.txt
+	@$(LOCKED) -r .venv/first.txt
+	@$(LOCKED) -r requirements-bench.lock
+	@touch $@
