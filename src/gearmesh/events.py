@@ -1,0 +1,142 @@
+"""The first event of a step: a turning point of y, or the level that ends the regime.
+
+Both are found on the Taylor polynomials of a step, in all lanes at once. Turning points come
+first: up to the first one y is monotone, so it crosses a level at most once and end values decide
+whether it does. That makes the search for contact loss complete: an orbit that dips through
+y = 0 and returns within a step (grazing) has its turning point below 0.
+
+A turning point is a change of sign of dy/ds. It is sampled at `N_SAMPLES` places; between two of
+them a pair of changes could hide, only where dy/ds has a minimum of its size there. The two
+tangents bound that minimum from below, and where they fall through 0 it is computed.
+"""
+
+from numba import njit
+
+from gearmesh.lanes import any_lane, fma, load, magnitude, select, spread
+from gearmesh.taylor import ORDER, SIGN, V, Y, evaluate, evaluate_with_bend, evaluate_with_slope
+
+N_SAMPLES = 8
+# A step of Halley's method this small leaves an error of its cube.
+_CONVERGED = 1e-6
+# Far enough for the value at the minimum, which is flat there.
+_DIP_PLACE = 1e-7
+_MOST_ITERATIONS = 60
+
+
+@njit(inline="always")
+def _halley(at, value, slope, bend):
+    """Return the next place of Halley's method; `bend` is half the curvature."""
+    newton = value / slope
+    return at - newton / (1.0 - newton * bend / slope)
+
+
+@njit(inline="always")
+def _dip(like, work, sign, suspect, low, high):
+    """Return whether |dy/ds| falls through 0 at its minimum between `low` and `high`, and where."""
+    zero = spread(like, 0.0)
+    at = 0.5 * (low + high)
+    active = suspect
+    for _ in range(_MOST_ITERATIONS):
+        _, slope, bend = evaluate_with_bend(like, work, V, ORDER, at)
+        falling = sign * slope < zero
+        low = select(falling, at, low)
+        high = select(falling, high, at)
+        following = at - slope / (2.0 * bend)
+        inside = (following > low) & (following < high)
+        following = select(inside, following, 0.5 * (low + high))
+        settled = magnitude(following - at) <= spread(like, _DIP_PLACE)
+        at = select(active, following, at)
+        active = active & ~settled
+        if not any_lane(active):
+            break
+    value = evaluate(like, work, V, ORDER, at)
+    return sign * value < zero, at
+
+
+@njit(inline="never")
+def bracket_turning(like, work):
+    """Return whether y turns within the step, and the bracket (low, high) of the first place."""
+    zero = spread(like, 0.0)
+    sign = load(like, work, SIGN)
+    low = zero
+    high = spread(like, 1.0)
+    found = zero > zero
+    before = sign * load(like, work, V)
+    slope_before = sign * load(like, work, V + 1)
+    place_before = zero
+    width = 1.0 / N_SAMPLES
+    for j in range(1, N_SAMPLES + 1):
+        place = spread(like, j * width)
+        value, slope = evaluate_with_slope(like, work, V, ORDER, place)
+        value = sign * value
+        slope = sign * slope
+        dips = (slope_before < zero) & (slope > zero) & (value >= zero) & ~found
+        if any_lane(dips):
+            # Where the tangents of both ends meet: below the minimum of a convex course.
+            where = (value - before - slope * width) / (slope_before - slope)
+            suspect = dips & (fma(slope_before, where, before) <= zero)
+            if any_lane(suspect):
+                through, at = _dip(like, work, sign, suspect, place_before, place)
+                suspect = suspect & through
+                low = select(suspect, place_before, low)
+                high = select(suspect, at, high)
+                found = found | suspect
+        turns = (value < zero) & ~found
+        low = select(turns, place_before, low)
+        high = select(turns, place, high)
+        found = found | turns
+        before = value
+        slope_before = slope
+        place_before = place
+    return found, low, high
+
+
+@njit(inline="never")
+def turning_point(like, work, wanted, low, high):
+    """Return where dy/ds changes sign in the bracket; Halley's method inside the bracket."""
+    zero = spread(like, 0.0)
+    sign = load(like, work, SIGN)
+    at = 0.5 * (low + high)
+    active = wanted
+    for _ in range(_MOST_ITERATIONS):
+        value, slope, bend = evaluate_with_bend(like, work, V, ORDER, at)
+        forward = sign * value > zero
+        low = select(active & forward, at, low)
+        high = select(active & ~forward, at, high)
+        following = _halley(at, value, slope, bend)
+        settled = magnitude(following - at) <= spread(like, _CONVERGED)
+        inside = (following > low) & (following < high)
+        following = select(inside | settled, following, 0.5 * (low + high))
+        at = select(active, following, at)
+        active = active & ~settled
+        if not any_lane(active):
+            break
+    return at
+
+
+@njit(inline="never")
+def crossing(like, work, level, wanted, end):
+    """Return where y, monotone up to `end`, passes `level`; Halley's method in a shrinking bracket."""
+    sign = load(like, work, SIGN)
+    zero = spread(like, 0.0)
+    low = zero
+    high = end
+    start = load(like, work, Y)
+    last = evaluate(like, work, Y, ORDER + 1, end)
+    at = end * ((level - start) / (last - start))
+    at = select((at > low) & (at < high), at, 0.5 * end)
+    active = wanted
+    for _ in range(_MOST_ITERATIONS):
+        value, slope, bend = evaluate_with_bend(like, work, Y, ORDER + 1, at)
+        short = sign * (value - level) < zero
+        low = select(active & short, at, low)
+        high = select(active & ~short, at, high)
+        following = _halley(at, value - level, slope, bend)
+        settled = magnitude(following - at) <= spread(like, _CONVERGED)
+        inside = (following > low) & (following < high)
+        following = select(inside | settled, following, 0.5 * (low + high))
+        at = select(active, following, at)
+        active = active & ~settled
+        if not any_lane(active):
+            break
+    return at

@@ -1,0 +1,233 @@
+"""Integration of runs, one or thousands, to a tolerance.
+
+`simulate` is the one door to both solvers: the compiled sweep over SIMD lanes
+(`gearmesh.sweep`) for the reduced system, and the general solver in the six coordinates
+(`gearmesh.general`) for what the reduction leaves out: run-out, profile deviation and the
+truncated Fourier series of the stiffness.
+"""
+
+import hashlib
+import math
+from collections.abc import Sequence
+from functools import lru_cache
+from itertools import pairwise
+from pathlib import Path
+
+import numpy as np
+from numba import njit
+
+from gearmesh import events, lanes, sweep, taylor
+from gearmesh.motion import Problem
+from gearmesh.response import CONTACT_LOSS, INVERSE_MESH, Response, Samples
+from gearmesh.stiffness import in_double_contact, switch_phases
+
+PITCH_PHASE = 0.5
+
+
+def mesh_gamma(phase, contact_ratio):
+    low, high = switch_phases(contact_ratio)
+    return 0 if not low < phase < high else (1 if phase < 0.5 else -1)
+
+
+LOOSENING = 100.0
+"""How much looser the companion run is whose difference estimates the errors."""
+
+SENSITIVE = 1e5
+"""An estimated error above this multiple of the tolerance marks a sensitive orbit."""
+
+_STATUS = ("ok", "step_limit", "extremum_overflow", "not_finite")
+_EXTREMA_PER_PERIOD = 64
+_CHUNK = 256
+
+
+def _compile(sources: str):
+    """Return the compiled sweep; `sources` makes numba's cache notice edits of other modules."""
+
+    @njit(cache=True, nogil=True)
+    def compiled(runs, summaries, strobes, extrema, samples, samples_per_period):
+        sources  # noqa: B018 (a free variable is part of the key of the cache)
+        sweep.sweep(lanes.zeros8(), runs, summaries, strobes, extrema, samples, samples_per_period)
+
+    return compiled
+
+
+def _digest_sources() -> str:
+    digest = hashlib.sha256()
+    for module in (lanes, taylor, events, sweep):
+        digest.update(Path(module.__file__).read_bytes())
+    return digest.hexdigest()
+
+
+_sweep = _compile(_digest_sources())
+
+
+def simulate(
+    problems: Sequence[Problem], tolerance: float = 1e-10, samples_per_period: int = 0
+) -> list[Response]:
+    """Integrate `problems` and measure their responses.
+
+    Parameters
+    ----------
+    problems : sequence of Problem
+        The runs; each is independent of the others, to the last bit.
+    tolerance : float
+        Bound of the local error of a step, in y_st and y_st Omega_s.
+    samples_per_period : int
+        Samples of the time course in each kept mesh period; 0 for none.
+
+    Returns
+    -------
+    list of Response
+        In the order of `problems`. A run that fails has a status other than ``"ok"``.
+    """
+    responses: list[Response | None] = [None] * len(problems)
+    reduced = [i for i, problem in enumerate(problems) if _is_reducible(problem)]
+    for first in range(0, len(reduced), _CHUNK):
+        chunk = reduced[first : first + _CHUNK]
+        found = _simulate_reduced([problems[i] for i in chunk], tolerance, samples_per_period)
+        for i, response in zip(chunk, found, strict=True):
+            responses[i] = response
+    if len(reduced) < len(problems):
+        from gearmesh.general import integrate
+
+        for i, response in enumerate(responses):
+            if response is None:
+                responses[i] = integrate(problems[i], tolerance, samples_per_period)
+    return responses
+
+
+def _is_reducible(problem: Problem) -> bool:
+    run_out = problem.eccentricity_3 != 0.0 or problem.eccentricity_2 != 0.0
+    return not (run_out or problem.deviation or problem.stiffness_harmonics)
+
+
+@lru_cache
+def _stretches(contact_ratio: float, initial_phase: float, friction: bool):
+    """Return (length, double contact, gamma) of each stretch of a mesh period, from its start.
+
+    Lengths are in mesh periods; a period ends at every switch, and at the pitch point where
+    friction turns.
+    """
+    places = [*switch_phases(contact_ratio), *([PITCH_PHASE] if friction else [])]
+    edges = [0.0, *sorted((place - initial_phase) % 1.0 for place in places), 1.0]
+    stretches = []
+    for start, end in pairwise(edges):
+        if end > start:
+            middle = (0.5 * (start + end) + initial_phase) % 1.0
+            double = bool(in_double_contact(middle, contact_ratio))
+            stretches.append((end - start, double, mesh_gamma(middle, contact_ratio)))
+    return stretches
+
+
+def _run(problem: Problem, tolerance: float) -> tuple:
+    """Return `problem` in the form that the compiled sweep takes, a row of `sweep.RUN`."""
+    friction = problem.friction_coefficient * math.tan(problem.pressure_angle)
+    period = 2.0 * math.pi / problem.nu
+    stretches = _stretches(problem.contact_ratio, problem.initial_phase, friction != 0.0)
+    levels = {True: problem.stiffness_max, False: problem.stiffness_min}
+    rest = (0.0,) * (sweep.MAX_SEGMENTS - len(stretches))
+    periods = problem.revolutions * problem.teeth
+    frequency = math.sqrt(problem.bearing_stiffness / problem.body_mass)
+    bearing = -2.0 / problem.bearing_stiffness
+    return (
+        len(stretches),
+        tuple(length * period for length, _, _ in stretches) + rest,
+        tuple(levels[double] for _, double, _ in stretches) + rest,
+        tuple(friction * gamma for _, _, gamma in stretches) + rest,
+        tuple(gamma for _, _, gamma in stretches) + rest,
+        period,
+        periods,
+        periods - problem.kept_revolutions * problem.teeth,
+        problem.material,
+        problem.lubricant,
+        problem.backlash,
+        2.0 / problem.body_mass,
+        frequency**2,
+        2.0 * problem.bearing_damping_ratio * frequency,
+        (1.0 - bearing, 0.0, bearing, 0.0),
+        math.log2(tolerance),
+    )
+
+
+def _simulate_reduced(problems, tolerance, samples_per_period) -> list[Response]:
+    n = len(problems)
+    rows = [_run(problem, tolerance) for problem in problems]
+    # Companions follow the runs and leave nothing but their summaries.
+    runs = np.array(rows + rows, sweep.RUN)
+    runs["log_tolerance"][n:] = math.log2(tolerance * LOOSENING)
+    kept = int((runs["periods"] - runs["first_kept"]).max())
+    summaries = np.zeros(2 * n, sweep.SUMMARY)
+    summaries["y_max"] = -np.inf
+    summaries["y_min"] = np.inf
+    strobes = np.empty((n, int(runs["periods"].max()) + 1, 2))
+    extrema = np.empty((n, _EXTREMA_PER_PERIOD * kept), sweep.EXTREMUM)
+    sampled = n if samples_per_period else 0
+    samples = np.empty((sampled, 6, kept * samples_per_period))
+    _sweep(runs, summaries, strobes, extrema, samples, samples_per_period)
+    return [
+        _response(
+            problem,
+            runs[i],
+            summaries[i],
+            summaries[n + i],
+            strobes[i],
+            extrema[i],
+            _samples(problem, samples[i], samples_per_period) if sampled else None,
+            tolerance,
+        )
+        for i, problem in enumerate(problems)
+    ]
+
+
+def _response(problem, run, summary, companion, strobes, extrema, samples, tolerance) -> Response:
+    period = float(run["period"])
+    if summary["status"] != sweep.OK:
+        return Response(_STATUS[summary["status"]], period)
+    extrema = extrema[: summary["extrema"]]
+    strobes = strobes[: run["periods"] + 1]
+    periods = problem.kept_revolutions * problem.teeth
+    duration = periods * period
+    errors = [abs(float(summary[name] - companion[name])) for name in ("y_max", "y_min")]
+    if companion["status"] != sweep.OK:
+        errors = [np.inf, np.inf]
+    return Response(
+        status="ok",
+        period=period,
+        extremum_time=extrema["time"].copy(),
+        extremum_y=extrema["y"].copy(),
+        extremum_kind=extrema["kind"].copy(),
+        strobe_y=strobes[:, 0].copy(),
+        strobe_v=strobes[:, 1].copy(),
+        y_max=float(summary["y_max"]),
+        y_min=float(summary["y_min"]),
+        y_rms=float(np.sqrt(summary["square_integral"] / duration)),
+        contact_loss_fraction=float(summary["loss_time"]) / duration,
+        inverse_mesh_fraction=float(summary["inverse_time"]) / duration,
+        n_contact_losses=int(summary["contact_losses"]),
+        turning_points_per_period=len(extrema) / periods,
+        y_max_error=errors[0],
+        y_min_error=errors[1],
+        sensitive=max(errors) > SENSITIVE * tolerance,
+        samples=samples,
+    )
+
+
+def _samples(problem, rows, per_period) -> Samples:
+    n = problem.kept_revolutions * problem.teeth * per_period
+    y, v, a, stiffness, regime, gamma = rows[:, :n].copy()
+    first = (problem.revolutions - problem.kept_revolutions) * problem.teeth
+    period = 2.0 * np.pi / problem.nu
+    engaged = regime != CONTACT_LOSS
+    penetration = np.where(regime == INVERSE_MESH, y + problem.backlash, y)
+    elastic = stiffness * engaged * penetration
+    return Samples(
+        time=first * period + np.arange(n) * (period / per_period),
+        y=y,
+        v=v,
+        a=a,
+        stiffness=stiffness,
+        modified_stiffness=stiffness * engaged,
+        force_dynamic=stiffness * y,
+        force_friction=-problem.friction_coefficient * elastic * gamma,
+        regime=regime.astype(np.int8),
+    )
