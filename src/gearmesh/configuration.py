@@ -27,12 +27,6 @@ MAX_CASES = 200_000
 _MAX_BASES = 8
 
 
-def nu_label(nu: float) -> str:
-    """Write a frequency for a file name: 4 decimals, more only where this one needs them."""
-    number = _decimal(nu)
-    return max(f"{number:.4f}", f"{number.normalize():f}", key=len)
-
-
 def read_nu(value: object) -> float:
     """Read a frequency, rounded to `NU_DECIMALS`; raises ValueError with what is allowed."""
     number = units.parse(value, "1")
@@ -186,11 +180,6 @@ class Case:
     variant: Variant
     nu: float
     time_course: bool = False
-
-    @property
-    def label(self) -> str:
-        """The frequency as its file name has it."""
-        return nu_label(self.nu)
 
 
 class Study(Section):

@@ -14,9 +14,18 @@ from typing import Self
 from pydantic import model_validator
 
 from gearmesh import stiffness
-from gearmesh.damping import Variant, coefficients
+from gearmesh.damping import Variant
 from gearmesh.motion import Problem
 from gearmesh.schema import Section, quantity, validate
+
+KINDS = {
+    "printed": "printed",
+    "derived": "derived",
+    "assumed": "assumed",
+    "run": "setting",
+    "solver": "setting",
+}
+"""Kind of the parameters in each section; a setting says nothing about the gear."""
 
 KG_PER_N_S2_MM = 1000.0
 """1 N s²/mm = 1000 kg: with it stiffnesses in N/mm and masses in kg go together."""
@@ -174,14 +183,13 @@ class Parameters(Section):
             Tuning ν_s = ω_c/Ω_s of the mesh frequency.
         """
         a, y_st, c_s = self.assumed, self.assumed.static_deflection, self.stiffness_mean
-        damping = (self.damping_ratio * variant.factor, a.damping_length / y_st)
         return Problem(
             nu=nu,
             contact_ratio=self.printed.contact_ratio,
             stiffness_max=self.printed.mesh_stiffness_max / c_s,
             stiffness_min=self.stiffness_min / c_s,
-            material=coefficients(variant.material_powers, *damping),
-            lubricant=coefficients(variant.lubricant_powers, *damping),
+            material=self._damping_law(variant.material_powers, variant.factor),
+            lubricant=self._damping_law(variant.lubricant_powers, variant.factor),
             backlash=a.backlash / y_st,
             body_mass=a.body_mass / self.printed.reduced_mass,
             bearing_stiffness=a.bearing_stiffness / c_s,
@@ -199,6 +207,14 @@ class Parameters(Section):
             revolutions=self.run.revolutions,
             kept_revolutions=self.run.kept_revolutions,
         )
+
+    def _damping_law(
+        self, powers: tuple[bool, bool, bool], factor: float
+    ) -> tuple[float, float, float]:
+        """Return the coefficients of v, |v| v and v³ in eq. (7), in units of C_s y_st."""
+        reach = self.assumed.static_deflection / self.assumed.damping_length
+        linear, quadratic, cubic = (2.0 * self.damping_ratio * factor * acts for acts in powers)
+        return linear, quadratic * reach, cubic * reach**2
 
     def replace(self, changes: Mapping[str, object]) -> "Parameters":
         """Return a copy with other values, such as ``{"assumed.backlash": "40 um"}``.

@@ -2,8 +2,6 @@
 
 from pathlib import Path
 
-from gearmesh.configuration import nu_label
-
 CONFIG = Path("config")
 PAPER = CONFIG / "paper.yaml"
 SMOKE = CONFIG / "smoke.yaml"
@@ -25,6 +23,16 @@ FIGURE_NAMES = tuple(f"fig{number}" for number in range(1, 8))
 """All figures; the first is a drawing, the others come from the notebook of their name."""
 
 NOTEBOOK_NAMES = FIGURE_NAMES[1:]
+
+
+def nu_label(nu: float) -> str:
+    """Write a frequency for a file name: 4 decimals, more only where this one needs them.
+
+    Frequencies have at most 10 decimals (`gearmesh.configuration.read_nu` sees to it), so no two
+    share a label, and a label stays the same whatever other frequencies there are.
+    """
+    whole, decimals = f"{nu:.10f}".split(".")
+    return f"{whole}.{decimals.rstrip('0'):0<4}"
 
 
 def case_file(variant: str, nu: float) -> Path:
