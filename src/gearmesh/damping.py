@@ -120,33 +120,6 @@ def variant(name: str) -> Variant:
     return replace(VARIANTS[base], factor=factor)
 
 
-def coefficients(
-    powers: tuple[bool, bool, bool], damping_ratio: float, damping_length: float
-) -> tuple[float, float, float]:
-    """Return the dimensionless coefficients of v, abs(v) v and v^3.
-
-    The paper gives the same number k to all powers, which needs a velocity scale
-    v_ref = l Omega_s: the terms are k v, k abs(v) v / v_ref and k v^3 / v_ref^2.
-
-    Parameters
-    ----------
-    powers : tuple of three bool
-        Which powers act.
-    damping_ratio : float
-        D = k / (2 sqrt(C_s m_red)), the factor of the variant included.
-    damping_length : float
-        l / y_st.
-
-    Returns
-    -------
-    tuple of three float
-        Force in F_st for a velocity in y_st Omega_s.
-    """
-    linear = 2.0 * damping_ratio
-    scaled = (linear, linear / damping_length, linear / damping_length**2)
-    return tuple(c if acts else 0.0 for c, acts in zip(scaled, powers, strict=True))
-
-
 def damping_force(velocity, law):
     """Return the damping force of eq. (7), k1 v + k2 abs(v) v + k3 v^3.
 
@@ -155,7 +128,7 @@ def damping_force(velocity, law):
     velocity : float or ndarray
         v = dy/dtau_s, in y_st.
     law : sequence of three float
-        k1, k2, k3, as `coefficients` returns them.
+        k1, k2, k3: force in F_st of v, abs(v) v and v^3 at v = 1.
 
     Returns
     -------
