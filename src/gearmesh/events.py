@@ -5,15 +5,24 @@ first: up to the first one y is monotone, so it crosses a level at most once and
 whether it does. That makes the search for contact loss complete: an orbit that dips through
 y = 0 and returns within a step (grazing) has its turning point below 0.
 
-A turning point is a change of sign of dy/ds. It is sampled at `N_SAMPLES` places; between two of
-them a pair of changes could hide, only where dy/ds has a minimum of its size there. The two
+A turning point is a change of sign of v. It is sampled at `N_SAMPLES` places; between two of
+them a pair of changes could hide, only where |v| has a minimum there. The two
 tangents bound that minimum from below, and where they fall through 0 it is computed.
 """
 
 from numba import njit
 
 from gearmesh.lanes import any_lane, fma, load, magnitude, select, spread
-from gearmesh.taylor import ORDER, SIGN, V, Y, evaluate, evaluate_with_bend, evaluate_with_slope
+from gearmesh.taylor import (
+    ORDER,
+    SIGN,
+    STEP,
+    V,
+    Y,
+    evaluate,
+    evaluate_with_bend,
+    evaluate_with_slope,
+)
 
 N_SAMPLES = 8
 # A step of Halley's method this small leaves an error of its cube.
@@ -32,7 +41,7 @@ def _halley(at, value, slope, bend):
 
 @njit(inline="always")
 def _dip(like, work, sign, suspect, low, high):
-    """Return whether |dy/ds| falls through 0 at its minimum between `low` and `high`, and where."""
+    """Return the minimum of sign v between `low` and `high`, and its place."""
     zero = spread(like, 0.0)
     at = 0.5 * (low + high)
     active = suspect
@@ -50,23 +59,27 @@ def _dip(like, work, sign, suspect, low, high):
         if not any_lane(active):
             break
     value = evaluate(like, work, V, ORDER, at)
-    return sign * value < zero, at
+    return sign * value, at
 
 
 @njit(inline="never")
 def bracket_turning(like, work):
-    """Return whether y turns within the step, and the bracket (low, high) of the first place."""
+    """Return whether y turns within the step, a bracket (low, high) of the first place, a guess."""
     zero = spread(like, 0.0)
     sign = load(like, work, SIGN)
+    step = load(like, work, STEP)
     low = zero
-    high = spread(like, 1.0)
+    high = step
+    # Values at both ends of the bracket, for the first guess.
+    low_value = zero
+    high_value = zero
     found = zero > zero
     before = sign * load(like, work, V)
     slope_before = sign * load(like, work, V + 1)
     place_before = zero
-    width = 1.0 / N_SAMPLES
+    width = step * (1.0 / N_SAMPLES)
     for j in range(1, N_SAMPLES + 1):
-        place = spread(like, j * width)
+        place = width * float(j)
         value, slope = evaluate_with_slope(like, work, V, ORDER, place)
         value = sign * value
         slope = sign * slope
@@ -76,27 +89,31 @@ def bracket_turning(like, work):
             where = (value - before - slope * width) / (slope_before - slope)
             suspect = dips & (fma(slope_before, where, before) <= zero)
             if any_lane(suspect):
-                through, at = _dip(like, work, sign, suspect, place_before, place)
-                suspect = suspect & through
+                lowest, at = _dip(like, work, sign, suspect, place_before, place)
+                suspect = suspect & (lowest < zero)
                 low = select(suspect, place_before, low)
                 high = select(suspect, at, high)
+                low_value = select(suspect, before, low_value)
+                high_value = select(suspect, lowest, high_value)
                 found = found | suspect
         turns = (value < zero) & ~found
         low = select(turns, place_before, low)
         high = select(turns, place, high)
+        low_value = select(turns, before, low_value)
+        high_value = select(turns, value, high_value)
         found = found | turns
         before = value
         slope_before = slope
         place_before = place
-    return found, low, high
+    guess = low + (high - low) * (low_value / (low_value - high_value))
+    return found, low, high, guess
 
 
 @njit(inline="never")
-def turning_point(like, work, wanted, low, high):
-    """Return where dy/ds changes sign in the bracket; Halley's method inside the bracket."""
+def turning_point(like, work, wanted, low, high, at):
+    """Return where v changes sign between `low` and `high`: Halley's method from `at`."""
     zero = spread(like, 0.0)
     sign = load(like, work, SIGN)
-    at = 0.5 * (low + high)
     active = wanted
     for _ in range(_MOST_ITERATIONS):
         value, slope, bend = evaluate_with_bend(like, work, V, ORDER, at)
@@ -116,7 +133,7 @@ def turning_point(like, work, wanted, low, high):
 
 @njit(inline="never")
 def crossing(like, work, level, wanted, end):
-    """Return where y, monotone up to `end`, passes `level`; Halley's method in a shrinking bracket."""
+    """Return where y, monotone up to `end`, passes `level`: Halley's method, bracketed."""
     sign = load(like, work, SIGN)
     zero = spread(like, 0.0)
     low = zero

@@ -18,7 +18,7 @@ from numba import njit
 
 from gearmesh import events, lanes, sweep, taylor
 from gearmesh.motion import Problem
-from gearmesh.response import CONTACT_LOSS, INVERSE_MESH, Response, Samples
+from gearmesh.response import Response, Samples
 from gearmesh.stiffness import in_double_contact, switch_phases
 
 PITCH_PHASE = 0.5
@@ -134,7 +134,7 @@ def _run(problem: Problem, tolerance: float) -> tuple:
         tuple(length * period for length, _, _ in stretches) + rest,
         tuple(levels[double] for _, double, _ in stretches) + rest,
         tuple(friction * gamma for _, _, gamma in stretches) + rest,
-        tuple(gamma for _, _, gamma in stretches) + rest,
+        tuple(-problem.friction_coefficient * gamma for _, _, gamma in stretches) + rest,
         period,
         periods,
         periods - problem.kept_revolutions * problem.teeth,
@@ -162,7 +162,8 @@ def _simulate_reduced(problems, tolerance, samples_per_period) -> list[Response]
     strobes = np.empty((n, int(runs["periods"].max()) + 1, 2))
     extrema = np.empty((n, _EXTREMA_PER_PERIOD * kept), sweep.EXTREMUM)
     sampled = n if samples_per_period else 0
-    samples = np.empty((sampled, 6, kept * samples_per_period))
+    row = kept * samples_per_period + lanes.WIDEST
+    samples = np.empty((sampled, sweep.N_SAMPLE_ROWS * row))
     _sweep(runs, summaries, strobes, extrema, samples, samples_per_period)
     return [
         _response(
@@ -214,20 +215,8 @@ def _response(problem, run, summary, companion, strobes, extrema, samples, toler
 
 def _samples(problem, rows, per_period) -> Samples:
     n = problem.kept_revolutions * problem.teeth * per_period
-    y, v, a, stiffness, regime, gamma = rows[:, :n].copy()
+    courses = rows.reshape(sweep.N_SAMPLE_ROWS, -1)[:, :n]
     first = (problem.revolutions - problem.kept_revolutions) * problem.teeth
-    period = 2.0 * np.pi / problem.nu
-    engaged = regime != CONTACT_LOSS
-    penetration = np.where(regime == INVERSE_MESH, y + problem.backlash, y)
-    elastic = stiffness * engaged * penetration
-    return Samples(
-        time=first * period + np.arange(n) * (period / per_period),
-        y=y,
-        v=v,
-        a=a,
-        stiffness=stiffness,
-        modified_stiffness=stiffness * engaged,
-        force_dynamic=stiffness * y,
-        force_friction=-problem.friction_coefficient * elastic * gamma,
-        regime=regime.astype(np.int8),
-    )
+    period = 2.0 * math.pi / problem.nu
+    time = first * period + np.arange(n) * (period / per_period)
+    return Samples(time, *courses[:-1], regime=courses[-1].astype(np.int8))

@@ -162,6 +162,9 @@ def _zeros(width):
 zeros1 = _zeros(1)
 zeros8 = _zeros(8)
 
+WIDEST = 8
+"""Most lanes that a vector has."""
+
 
 @intrinsic
 def width_of(typingctx, like):
@@ -184,12 +187,11 @@ def spread(typingctx, like, scalar):
     return like(like, scalar), codegen
 
 
-def _row_pointer(context, builder, array_type, array, index_type, row, width):
+def _element_pointer(context, builder, array_type, array, index_type, index, width, stride):
     data = context.make_array(array_type)(context, builder, array).data
-    index = context.cast(builder, row, index_type, types.intp)
-    offset = builder.mul(index, ir.Constant(index.type, width))
-    pointer = builder.gep(data, [offset])
-    return builder.bitcast(pointer, ir.VectorType(_DOUBLE, width).as_pointer())
+    offset = context.cast(builder, index, index_type, types.intp)
+    offset = builder.mul(offset, ir.Constant(offset.type, stride))
+    return builder.bitcast(builder.gep(data, [offset]), ir.VectorType(_DOUBLE, width).as_pointer())
 
 
 @intrinsic
@@ -197,27 +199,36 @@ def load(typingctx, like, array, row):
     """Return row `row` of a flat float64 array whose rows have one element for each lane."""
 
     def codegen(context, builder, sig, args):
-        pointer = _row_pointer(
-            context, builder, sig.args[1], args[1], sig.args[2], args[2], like.width
+        pointer = _element_pointer(
+            context, builder, sig.args[1], args[1], sig.args[2], args[2], like.width, like.width
         )
-        # llvmlite wants the element type where pointers are opaque.
         return builder.load(pointer, align=8)
 
     return like(like, array, row), codegen
 
 
-@intrinsic
-def store(typingctx, array, row, value):
-    """Write `value` to row `row` of a flat float64 array."""
-
+def _storing(stride_of):
     def codegen(context, builder, sig, args):
-        pointer = _row_pointer(
-            context, builder, sig.args[0], args[0], sig.args[1], args[1], value.width
+        width = sig.args[2].width
+        pointer = _element_pointer(
+            context, builder, sig.args[0], args[0], sig.args[1], args[1], width, stride_of(width)
         )
         builder.store(args[2], pointer, align=8)
         return context.get_dummy_value()
 
-    return types.void(array, row, value), codegen
+    return codegen
+
+
+@intrinsic
+def store(typingctx, array, row, value):
+    """Write `value` to row `row` of a flat float64 array."""
+    return types.void(array, row, value), _storing(lambda width: width)
+
+
+@intrinsic
+def store_at(typingctx, array, index, value):
+    """Write the lanes of `value` to consecutive elements of a flat array, from `index` on."""
+    return types.void(array, index, value), _storing(lambda width: 1)
 
 
 def _call(builder, name, vector_type, *args):
@@ -287,6 +298,17 @@ def lowest_bit(typingctx, bits):
         return builder.cttz(args[0], ir.Constant(ir.IntType(1), 1))
 
     return types.int64(types.int64), codegen
+
+
+@intrinsic
+def lane_numbers(typingctx, like):
+    """Return 0, 1, 2, ... in the lanes."""
+
+    def codegen(context, builder, sig, args):
+        kind = ir.VectorType(_DOUBLE, like.width)
+        return ir.Constant(kind, [float(lane) for lane in range(like.width)])
+
+    return like(like), codegen
 
 
 class _Traced:

@@ -14,12 +14,14 @@ from gearmesh.lanes import (
     any_lane,
     fma,
     lane_bits,
+    lane_numbers,
     load,
     lowest_bit,
     magnitude,
     select,
     spread,
     store,
+    store_at,
     width_of,
 )
 from gearmesh.response import CONTACT_LOSS, INVERSE_MESH, MAXIMUM, MINIMUM, NORMAL_MESH
@@ -29,7 +31,6 @@ from gearmesh.taylor import (
     CUBIC,
     ELASTIC,
     EVENT,
-    FRACTION,
     FRICTION,
     INVERSE,
     INVERSE_TIME,
@@ -48,13 +49,13 @@ from gearmesh.taylor import (
     ORDER,
     QUADRATIC,
     REMAINING,
-    SCRATCH,
     SIGN,
     SINCE_BOUNDARY,
     SINCE_STOP,
     SQUARE_INTEGRAL,
     STEP,
     STEPS,
+    TAKEN,
     TWO_MU,
     B,
     U,
@@ -64,7 +65,6 @@ from gearmesh.taylor import (
     evaluate,
     evaluate_with_slope,
     expand,
-    scale,
 )
 
 # What ends a step.
@@ -72,6 +72,9 @@ _PASSED, _TURNED, _CROSSED, _STOPPED = 0.0, 1.0, 2.0, 3.0
 
 OK, STEP_LIMIT, EXTREMUM_OVERFLOW, NOT_FINITE = range(4)
 """Outcome of a run."""
+
+N_SAMPLE_ROWS = 8
+"""Rows of samples: y, v, a, C/C_s, C (H1 + H2)/C_s, F_dyn, F_T, regime."""
 
 MAX_SEGMENTS = 6
 """Most stretches of constant stiffness and friction sign in a mesh period."""
@@ -82,7 +85,7 @@ RUN = np.dtype(
         ("length", np.float64, MAX_SEGMENTS),
         ("stiffness", np.float64, MAX_SEGMENTS),
         ("friction", np.float64, MAX_SEGMENTS),
-        ("gamma", np.float64, MAX_SEGMENTS),
+        ("coulomb", np.float64, MAX_SEGMENTS),
         ("period", np.float64),
         ("periods", np.int64),
         ("first_kept", np.int64),
@@ -96,7 +99,12 @@ RUN = np.dtype(
         ("log_tolerance", np.float64),
     ]
 )
-"""One run as the kernel takes it; lengths of time in tau_s, `start` is (u, u', b, b')."""
+"""One run as the kernel takes it, times in tau_s.
+
+For each stretch of constant stiffness and friction sign in a mesh period: its length, C/C_s, the
+share of the elastic force that friction adds to u'' and the ratio of the friction force (6) to
+the elastic force. `start` is (u, u', b, b').
+"""
 
 SUMMARY = np.dtype(
     [
@@ -326,14 +334,14 @@ def _highest_power(work, width):
 
 @njit
 def _find_event(like, work):
-    """Write the share of the step up to its first event, and what that event is."""
-    one = spread(like, 1.0)
+    """Write how far the step goes, up to its first event, and what that event is."""
     zero = spread(like, 0.0)
-    found, low, high = bracket_turning(like, work)
-    end = one
+    step = load(like, work, STEP)
+    end = step
+    found, low, high, guess = bracket_turning(like, work)
     if any_lane(found):
-        end = select(found, turning_point(like, work, found, low, high), one)
-    stopped = load(like, work, STEP) >= load(like, work, REMAINING)
+        end = select(found, turning_point(like, work, found, low, high, guess), step)
+    stopped = step >= load(like, work, REMAINING)
     event = select(stopped, spread(like, _STOPPED), spread(like, _PASSED))
     event = select(found, spread(like, _TURNED), event)
     sign = load(like, work, SIGN)
@@ -343,38 +351,36 @@ def _find_event(like, work):
     if any_lane(crossed):
         end = select(crossed, crossing(like, work, level, crossed, end), end)
         event = select(crossed, spread(like, _CROSSED), event)
-    store(work, FRACTION, end)
+    store(work, TAKEN, end)
     store(work, EVENT, event)
 
 
 @njit
 def _integrate_square(like, work):
     """Add the integral of y^2 over the step that is taken (Gauss-Legendre, 8 nodes)."""
-    end = load(like, work, FRACTION)
+    end = load(like, work, TAKEN)
     total = spread(like, 0.0)
     for i in range(_NODES.size):
         y = evaluate(like, work, Y, ORDER + 1, end * _NODES[i])
         total = fma(y * y, spread(like, _WEIGHTS[i]), total)
-    kept_duration = end * load(like, work, STEP) * load(like, work, KEPT)
+    kept_duration = end * load(like, work, KEPT)
     integral = fma(total, kept_duration, load(like, work, SQUARE_INTEGRAL))
     store(work, SQUARE_INTEGRAL, integral)
 
 
 @njit
 def _take_step(like, work):
-    """Move every lane to the end of its step; return the lanes that need more than that, as bits."""
-    at = load(like, work, FRACTION)
-    step = load(like, work, STEP)
-    u, u_slope = evaluate_with_slope(like, work, U, ORDER + 1, at)
-    b, b_slope = evaluate_with_slope(like, work, B, ORDER + 1, at)
+    """Move every lane to the end of its step; return those that need more, as bits."""
+    duration = load(like, work, TAKEN)
+    u, u_slope = evaluate_with_slope(like, work, U, ORDER + 1, duration)
+    b, b_slope = evaluate_with_slope(like, work, B, ORDER + 1, duration)
     store(work, U, u)
     store(work, B, b)
-    store(work, B + 1, b_slope / step)
+    store(work, B + 1, b_slope)
     event = load(like, work, EVENT)
     turned = event == spread(like, _TURNED)
     # v is 0 at a turning point, to the last bit.
-    store(work, U + 1, select(turned, -(b_slope / step), u_slope / step))
-    duration = at * step
+    store(work, U + 1, select(turned, -b_slope, u_slope))
     since_stop = load(like, work, SINCE_STOP) + duration
     remaining = load(like, work, LENGTH) - since_stop
     store(work, SINCE_STOP, since_stop)
@@ -416,38 +422,38 @@ def _sample(like, work, lane, runs, places, samples, per_period):
     run = runs[place.run]
     if place.period < run.first_kept:
         return
-    step = _get(work, width, STEP, lane)
     spacing = run.period / per_period
-    end = _get(work, width, SINCE_BOUNDARY, lane) + step * _get(work, width, FRACTION, lane)
+    since_boundary = _get(work, width, SINCE_BOUNDARY, lane)
+    end = since_boundary + _get(work, width, TAKEN, lane)
     first = place.sample
     last = min(int(np.ceil(end / spacing)), per_period)
-    at_boundary = place.segment + 1 == run.segments
-    if at_boundary and _get(work, width, EVENT, lane) == _STOPPED:
+    if place.segment + 1 == run.segments and _get(work, width, EVENT, lane) == _STOPPED:
         last = per_period
+    stiffness = run.stiffness[place.segment]
+    engaged = _get(work, width, ELASTIC, lane)
+    shift = engaged * _get(work, width, OFFSET, lane)
+    gamma = run.coulomb[place.segment]
+    rows = samples[place.run]
+    row = rows.size // N_SAMPLE_ROWS
     begin = (place.period - run.first_kept) * per_period
-    target = samples[place.run]
+    zero = spread(like, 0.0)
+    # A chunk may write beyond `last`: the next step writes there again, rows have spare room.
     for i in range(first, last, width):
-        for j in range(width):
-            s = ((i + j) * spacing - _get(work, width, SINCE_BOUNDARY, lane)) / step
-            _set(work, width, SCRATCH, j, s)
-        s = load(like, work, SCRATCH)
-        y = spread(like, 0.0)
-        v = y
-        half_a = y
+        time = (lane_numbers(like) + float(i)) * spacing - since_boundary
+        y = v = half_a = zero
         for k in range(ORDER, -1, -1):
-            half_a = fma(half_a, s, v)
-            v = fma(v, s, y)
-            y = fma(y, s, spread(like, _get(work, width, Y + k, lane)))
-        store(work, SCRATCH, y)
-        store(work, SCRATCH + 1, v * (1.0 / step))
-        store(work, SCRATCH + 2, half_a * (2.0 / (step * step)))
-        for j in range(min(width, last - i)):
-            for row in range(3):
-                target[row, begin + i + j] = _get(work, width, SCRATCH + row, j)
-    for i in range(begin + first, begin + last):
-        target[3, i] = run.stiffness[place.segment]
-        target[4, i] = place.regime
-        target[5, i] = run.gamma[place.segment]
+            half_a = fma(half_a, time, v)
+            v = fma(v, time, y)
+            y = fma(y, time, spread(like, _get(work, width, Y + k, lane)))
+        at = begin + i
+        store_at(rows, at, y)
+        store_at(rows, at + row, v)
+        store_at(rows, at + 2 * row, half_a * 2.0)
+        store_at(rows, at + 3 * row, spread(like, stiffness))
+        store_at(rows, at + 4 * row, spread(like, engaged))
+        store_at(rows, at + 5 * row, y * stiffness)
+        store_at(rows, at + 6 * row, (y * engaged - shift) * gamma)
+        store_at(rows, at + 7 * row, spread(like, float(place.regime)))
     place.sample = max(first, last)
 
 
@@ -456,8 +462,8 @@ def sweep(like, runs, summaries, strobes, extrema, samples, samples_per_period):
     """Integrate all `runs` (see `RUN`); results stand at the index of the run.
 
     `summaries` has one row for each run. `strobes` of shape (l, periods + 1, 2), `extrema` of shape
-    (m, capacity) and `samples` of shape (n, 6, n_samples), which takes y, v, a, C/C_s, regime and
-    gamma, serve the first l, m and n runs.
+    (m, capacity) and `samples` of shape (n, N_SAMPLE_ROWS * row) serve the first l, m and n runs;
+    a row of samples has room for one chunk of lanes more than it holds.
     """
     width = width_of(like)
     work = np.zeros(N_ROWS * width)
@@ -475,7 +481,6 @@ def sweep(like, runs, summaries, strobes, extrema, samples, samples_per_period):
         _turn(like, work, runs, places, summaries, extrema)
         expand(like, work, _highest_power(work, width))
         choose_step(like, work)
-        scale(like, work)
         _find_event(like, work)
         if any_lane(load(like, work, KEPT) > spread(like, 0.0)):
             _integrate_square(like, work)

@@ -55,7 +55,7 @@ _FIRST = 4 * _SPAN
     LOG_TOLERANCE,  # log2 of the local error tolerance
     SIGN,  # direction of motion, sign of v
     STEP,  # length of the expansion
-    FRACTION,  # share of it that is taken, up to the first event
+    TAKEN,  # what is taken of it, up to the first event
     EVENT,  # what ends the step, see `gearmesh.integrator`
     SINCE_STOP,  # time since the stretch of constant stiffness began
     LENGTH,  # of that stretch
@@ -177,19 +177,6 @@ def choose_step(like, work):
         bound = coarse_exp2(room)
         step = select(bound < step, bound, step)
     store(work, STEP, step)
-
-
-@njit(inline="never")
-def scale(like, work):
-    """Rescale the series to the step, t = STEP s with s in <0; 1>; V becomes dy/ds."""
-    step = load(like, work, STEP)
-    power = step
-    store(work, V, load(like, work, V) * step)
-    for k in range(1, ORDER + 1):
-        for series in (U, B, Y):
-            store(work, series + k, load(like, work, series + k) * power)
-        store(work, V + k - 1, load(like, work, Y + k) * float(k))
-        power = power * step
 
 
 @njit(inline="always")
