@@ -16,18 +16,11 @@ from pathlib import Path
 import numpy as np
 from numba import njit
 
-from gearmesh import events, lanes, sweep, taylor
+from gearmesh import events, lanes, response, sweep, taylor
+from gearmesh.friction import mesh_gamma
 from gearmesh.motion import Problem
 from gearmesh.response import Response, Samples
 from gearmesh.stiffness import in_double_contact, switch_phases
-
-PITCH_PHASE = 0.5
-
-
-def mesh_gamma(phase, contact_ratio):
-    low, high = switch_phases(contact_ratio)
-    return 0 if not low < phase < high else (1 if phase < 0.5 else -1)
-
 
 LOOSENING = 100.0
 """How much looser the companion run is whose difference estimates the errors."""
@@ -37,13 +30,15 @@ SENSITIVE = 1e5
 
 _STATUS = ("ok", "step_limit", "extremum_overflow", "not_finite")
 _EXTREMA_PER_PERIOD = 64
+# Equal wheels: the pitch point halves the single contact.
+_PITCH_PHASE = 0.5
 _CHUNK = 256
 
 
-def _compile(sources: str):
+def _compile(sources: str, cache: bool):
     """Return the compiled sweep; `sources` makes numba's cache notice edits of other modules."""
 
-    @njit(cache=True, nogil=True)
+    @njit(cache=cache, nogil=True)
     def compiled(runs, summaries, strobes, extrema, samples, samples_per_period):
         sources  # noqa: B018 (a free variable is part of the key of the cache)
         sweep.sweep(lanes.zeros8(), runs, summaries, strobes, extrema, samples, samples_per_period)
@@ -51,14 +46,26 @@ def _compile(sources: str):
     return compiled
 
 
+@lru_cache
+def _compiled_sweep(cache: bool = True):
+    try:
+        return _compile(_digest_sources(), cache)
+    except RuntimeError:  # numba found no folder that it may write its cache to
+        return _compile(_digest_sources(), False)
+
+
+def _sweep(*arguments) -> None:
+    try:
+        _compiled_sweep()(*arguments)
+    except OSError:  # the cache cannot be read or written: compile for this process alone
+        _compiled_sweep(cache=False)(*arguments)
+
+
 def _digest_sources() -> str:
     digest = hashlib.sha256()
-    for module in (lanes, taylor, events, sweep):
+    for module in (lanes, taylor, events, response, sweep):
         digest.update(Path(module.__file__).read_bytes())
     return digest.hexdigest()
-
-
-_sweep = _compile(_digest_sources())
 
 
 def simulate(
@@ -108,7 +115,7 @@ def _stretches(contact_ratio: float, initial_phase: float, friction: bool):
     Lengths are in mesh periods; a period ends at every switch, and at the pitch point where
     friction turns.
     """
-    places = [*switch_phases(contact_ratio), *([PITCH_PHASE] if friction else [])]
+    places = [*switch_phases(contact_ratio), *([_PITCH_PHASE] if friction else [])]
     edges = [0.0, *sorted((place - initial_phase) % 1.0 for place in places), 1.0]
     stretches = []
     for start, end in pairwise(edges):
