@@ -1,0 +1,1 @@
+"""Figures 1 to 7: functions from datasets and cases to matplotlib figures."""
