@@ -47,7 +47,7 @@ class Frequencies(Section):
 
     start: Nu | None = Field(None, description="first frequency of the grid")
     stop: Nu | None = Field(None, description="last frequency of the grid, at the most")
-    step: float | None = quantity("1", "Δν", "step of the grid", 1e-9, 1.0)
+    step: float | None = quantity("1", "Δν", "step of the grid", 1e-9, 1.0, default=None)
     values: tuple[Nu, ...] = Field((), description="further frequencies")
 
     @model_validator(mode="after")
@@ -55,20 +55,20 @@ class Frequencies(Section):
         ends = {"start": self.start, "stop": self.stop, "step": self.step}
         lacking = [name for name, value in ends.items() if value is None]
         if len(lacking) in (1, 2):
-            raise ValueError(f"{lacking[0]} missing; a grid has start, stop and step")
+            raise ValueError(f"{lacking[0]}: missing; a grid has start, stop and step")
         if lacking and not self.values:
-            raise ValueError("no frequency; allowed are start, stop and step, values, or both")
+            raise ValueError("values: missing; allowed are start, stop and step, values, or both")
         if not lacking and self.stop < self.start:
             raise ValueError(
-                f"stop {self.stop:g} is below start {self.start:g}; allowed is start to {NU_MAX:g}"
+                f"stop: found {self.stop:g}, below start; allowed is {self.start:g} to {NU_MAX:g}"
             )
         count = self._count() + len(self.values)
         if count > MAX_CASES:
-            raise ValueError(f"{count} frequencies; allowed are at most {MAX_CASES}")
+            raise ValueError(f"step: makes {count} frequencies; allowed are at most {MAX_CASES}")
         seen = set(self._grid())
         for nu in self.values:
             if nu in seen:
-                raise ValueError(f"frequency {nu:g} stands twice; allowed is once")
+                raise ValueError(f"values: found {nu:g} twice, or on the grid too; allowed is once")
             seen.add(nu)
         return self
 
@@ -110,9 +110,9 @@ class StrongDamping(Section):
     @model_validator(mode="after")
     def _is_another_variant(self) -> Self:
         if self.strong_variant.name in VARIANTS:
-            raise ValueError(f"factor is {self.factor:g}; allowed is any other than 1")
+            raise ValueError(f"factor: found {self.factor:g}; allowed is any other than 1")
         if self.strong_variant.powers_label == "":
-            raise ValueError(f"{self.variant} has no damping; allowed is a variant that has")
+            raise ValueError(f"variant: found {self.variant}; allowed is a variant with damping")
         return self
 
     @property
@@ -143,22 +143,22 @@ class Plan(Section):
     @model_validator(mode="after")
     def _is_consistent(self) -> Self:
         if not self.variants:
-            raise ValueError("variants is empty; allowed are names of Tab. 1, or all")
+            raise ValueError("variants: found none; allowed are names of Tab. 1, or all")
         for name in self.variants:
             if self.variants.count(name) > 1:
-                raise ValueError(f"variant {name} stands twice; allowed is once")
+                raise ValueError(f"variants: found {name} twice; allowed is once")
         count = sum(len(nus) for _, nus in self.frequencies())
         if count > MAX_CASES:
-            raise ValueError(f"{count} cases; allowed are at most {MAX_CASES}")
+            raise ValueError(f"nu: makes {count} cases; allowed are at most {MAX_CASES}")
         spans = {v.name: (nus[0], nus[-1]) for v, nus in self.frequencies()}
         for name, nus in self.time_courses.items():
             if name not in spans:
                 hint = nearest(name, spans) or f"; allowed are {', '.join(spans)}"
-                raise ValueError(f"time_courses names '{name}', which is not computed{hint}")
+                raise ValueError(f"time_courses.{name}: this variant is not computed{hint}")
             low, high = spans[name]
             for nu in nus:
                 if nus.count(nu) > 1:
-                    raise ValueError(f"time_courses.{name}: {nu:g} stands twice; allowed is once")
+                    raise ValueError(f"time_courses.{name}: found {nu:g} twice; allowed is once")
                 if not low <= nu <= high:
                     raise ValueError(
                         f"time_courses.{name}: found {nu:g}; allowed is {low:g} to {high:g}"
@@ -202,7 +202,7 @@ class Study(Section):
                 hint = nearest(name, assumed)
                 raise ValueError(f"reasons.{name}: no assumed key of this name{hint}")
             if not reason.strip() or "\n" in reason.strip():
-                raise ValueError(f"reasons.{name}: found {shown(reason)}: allowed is one line")
+                raise ValueError(f"reasons.{name}: found {shown(reason)}; allowed is one line")
         for name in assumed:
             if name not in self.reasons:
                 raise ValueError(f"reasons.{name}: missing; every assumed key needs one line")
@@ -254,6 +254,7 @@ def load_study(path: str | Path, overrides: Iterable[str] = ()) -> Study:
         key, value = _override(text)
         _set(data, key.split("."), value, text)
         changed[key] = f"--set {text}"
+    _restate_reasons(data, changed)
     return validate(Study, data, str(path), changed)
 
 
@@ -266,7 +267,7 @@ def _with_bases(path: Path, inheriting: tuple[Path, ...]) -> dict[str, object]:
     if base is None:
         return data
     if not isinstance(base, str):
-        raise InputError(f"{path}: base: found {shown(base)}: allowed is the name of a file")
+        raise InputError(f"{path}: base: found {shown(base)}; allowed is the name of a file")
     inherited = path.parent / base
     try:
         return _merge(_with_bases(inherited, (*inheriting, path.resolve())), data)
@@ -295,9 +296,19 @@ def _override(text: str) -> tuple[str, object]:
     return key, yamlfile.read_value(value, f"--set {text}")
 
 
+def _restate_reasons(data: dict[str, object], changed: Mapping[str, str]) -> None:
+    """Let no reason of the file stand beside a value that the command line has replaced."""
+    reasons = data.get("reasons")
+    if isinstance(reasons, dict):
+        for key in changed:
+            section, _, name = key.partition(".")
+            if section == "assumed" and name in reasons and f"reasons.{name}" not in changed:
+                reasons[name] = "set on the command line"
+
+
 def _set(data: dict[str, object], keys: list[str], value: object, text: str) -> None:
     for key in keys[:-1]:
         data = data.setdefault(key, {})
         if not isinstance(data, dict):
-            raise InputError(f"--set {text}: {key} holds no keys")
+            raise InputError(f"--set {text}: '{key}' is no section, it holds no keys")
     data[keys[-1]] = value

@@ -100,8 +100,8 @@ class Run(Section):
     def _keeps_what_it_runs(self) -> Self:
         if self.kept_revolutions > self.revolutions:
             raise ValueError(
-                f"kept_revolutions is {self.kept_revolutions}; allowed is at most the "
-                f"{self.revolutions} of revolutions"
+                f"kept_revolutions: found {self.kept_revolutions}; allowed are at most the "
+                f"{self.revolutions} that are run"
             )
         return self
 

@@ -24,10 +24,15 @@ _EXPECTED = {
 }
 
 
-def quantity(unit: str, symbol: str, description: str, low: float, high: float) -> Any:
-    """Declare a quantity that is stored in `unit` and lies between `low` and `high`."""
+def quantity(
+    unit: str, symbol: str, description: str, low: float, high: float, **options: Any
+) -> Any:
+    """Declare a quantity that is stored in `unit` and lies between `low` and `high`.
+
+    `options` are those of ``pydantic.Field``, such as a default.
+    """
     extra = {"unit": unit, "symbol": symbol, "low": low, "high": high}
-    return Field(description=description, json_schema_extra=extra)
+    return Field(description=description, json_schema_extra=extra, **options)
 
 
 class Section(BaseModel):
@@ -38,8 +43,11 @@ class Section(BaseModel):
     @field_validator("*", mode="before")
     @classmethod
     def _read_quantity(cls, value: object, info: ValidationInfo) -> object:
-        declared = cls.model_fields[info.field_name].json_schema_extra
-        return _read(value, declared) if isinstance(declared, Mapping) else value
+        field = cls.model_fields[info.field_name]
+        declared = field.json_schema_extra
+        if declared is None or (value is None and not field.is_required()):
+            return value
+        return _read(value, declared)
 
 
 def _read(value: object, declared: Mapping[str, Any]) -> object:
@@ -84,9 +92,19 @@ def validate(model: type[Model], data: object, where: str, changed: Mapping[str,
     except ValidationError as error:
         slips = _slips(model, data, error)
     key, text = slips[0]
-    origin = next((o for k, o in changed.items() if f"{key}.".startswith(f"{k}.")), where)
+    origin = _origin(key, where, changed)
     more = f" (and {len(slips) - 1} more)" if len(slips) > 1 else ""
     raise InputError(": ".join(part for part in (origin, key, text) if part) + more) from None
+
+
+def _origin(key: str, where: str, changed: Mapping[str, str]) -> str:
+    """Say where the value of a key came from, or those of a section."""
+    for name, origin in changed.items():
+        if f"{key}.".startswith(f"{name}."):
+            return origin
+        if name.startswith(f"{key}."):
+            return f"{where} with {origin}"
+    return where
 
 
 def nearest(word: str, choices: Iterable[str]) -> str:
@@ -125,8 +143,11 @@ def _slips(model: type[BaseModel], data: object, error: ValidationError) -> list
         else:
             reason = _EXPECTED.get(item["type"], item["msg"]).removeprefix("Value error, ")
             found = _at(data, loc)
-            about_section = item["type"] == "value_error" and isinstance(found, Mapping)
-            wrong.append((key, reason if about_section else f"found {shown(found)}: {reason}"))
+            if item["type"] == "value_error" and _is_section(model, loc):
+                name, reason = reason.split(": ", 1)  # a check of a section names the key itself
+                wrong.append((f"{key}.{name}".lstrip("."), reason))
+            else:
+                wrong.append((key, f"found {shown(found)}; {reason}"))
     suggested = " ".join(text for _, text in unknown)
     missing = [(k, t) for k, t in missing if f"'{k.rpartition('.')[2]}'" not in suggested]
     return unknown + wrong + missing
@@ -148,6 +169,11 @@ def _field(model: type[BaseModel], loc: tuple[int | str, ...]) -> FieldInfo | No
 def _section(info: FieldInfo) -> type[BaseModel] | None:
     types = (info.annotation, *get_args(info.annotation))
     return next((t for t in types if isinstance(t, type) and issubclass(t, BaseModel)), None)
+
+
+def _is_section(model: type[BaseModel], loc: tuple[int | str, ...]) -> bool:
+    info = _field(model, loc)
+    return not loc or (info is not None and _section(info) is not None)
 
 
 def _keys(model: type[BaseModel], loc: tuple[int | str, ...]) -> list[str]:
