@@ -69,7 +69,10 @@ def _digest_sources() -> str:
 
 
 def simulate(
-    problems: Sequence[Problem], tolerance: float = 1e-10, samples_per_period: int = 0
+    problems: Sequence[Problem],
+    tolerance: float = 1e-10,
+    samples_per_period: int = 0,
+    estimate_errors: bool = True,
 ) -> list[Response]:
     """Integrate `problems` and measure their responses.
 
@@ -81,6 +84,9 @@ def simulate(
         Bound of the local error of a step, in y_st and y_st Omega_s.
     samples_per_period : int
         Samples of the time course in each kept mesh period; 0 for none.
+    estimate_errors : bool
+        Whether every run has a companion, `LOOSENING` times less accurate, for the estimates
+        `Response.y_max_error`, `y_min_error` and `sensitive`. Costs as much as the run.
 
     Returns
     -------
@@ -91,14 +97,16 @@ def simulate(
     reduced = [i for i, problem in enumerate(problems) if _is_reducible(problem)]
     for first in range(0, len(reduced), _CHUNK):
         chunk = reduced[first : first + _CHUNK]
-        found = _simulate_reduced([problems[i] for i in chunk], tolerance, samples_per_period)
-        for i, response in zip(chunk, found, strict=True):
-            responses[i] = response
+        found = _simulate_reduced(
+            [problems[i] for i in chunk], tolerance, samples_per_period, estimate_errors
+        )
+        for i, measured in zip(chunk, found, strict=True):
+            responses[i] = measured
     if len(reduced) < len(problems):
         from gearmesh.general import integrate
 
-        for i, response in enumerate(responses):
-            if response is None:
+        for i, measured in enumerate(responses):
+            if measured is None:
                 responses[i] = integrate(problems[i], tolerance, samples_per_period)
     return responses
 
@@ -136,6 +144,7 @@ def _run(problem: Problem, tolerance: float) -> tuple:
     periods = problem.revolutions * problem.teeth
     frequency = math.sqrt(problem.bearing_stiffness / problem.body_mass)
     bearing = -2.0 / problem.bearing_stiffness
+    start = problem.initial_state or (1.0 - bearing, 0.0, bearing, 0.0)
     return (
         len(stretches),
         tuple(length * period for length, _, _ in stretches) + rest,
@@ -151,19 +160,19 @@ def _run(problem: Problem, tolerance: float) -> tuple:
         2.0 / problem.body_mass,
         frequency**2,
         2.0 * problem.bearing_damping_ratio * frequency,
-        (1.0 - bearing, 0.0, bearing, 0.0),
+        start,
         math.log2(tolerance),
     )
 
 
-def _simulate_reduced(problems, tolerance, samples_per_period) -> list[Response]:
+def _simulate_reduced(problems, tolerance, samples_per_period, estimate_errors) -> list[Response]:
     n = len(problems)
     rows = [_run(problem, tolerance) for problem in problems]
     # Companions follow the runs and leave nothing but their summaries.
-    runs = np.array(rows + rows, sweep.RUN)
+    runs = np.array(rows + rows if estimate_errors else rows, sweep.RUN)
     runs["log_tolerance"][n:] = math.log2(tolerance * LOOSENING)
     kept = int((runs["periods"] - runs["first_kept"]).max())
-    summaries = np.zeros(2 * n, sweep.SUMMARY)
+    summaries = np.zeros(len(runs), sweep.SUMMARY)
     summaries["y_max"] = -np.inf
     summaries["y_min"] = np.inf
     strobes = np.empty((n, int(runs["periods"].max()) + 1, 2))
@@ -177,7 +186,7 @@ def _simulate_reduced(problems, tolerance, samples_per_period) -> list[Response]
             problem,
             runs[i],
             summaries[i],
-            summaries[n + i],
+            summaries[n + i] if estimate_errors else None,
             strobes[i],
             extrema[i],
             _samples(problem, samples[i], samples_per_period) if sampled else None,
@@ -195,9 +204,13 @@ def _response(problem, run, summary, companion, strobes, extrema, samples, toler
     strobes = strobes[: run["periods"] + 1]
     periods = problem.kept_revolutions * problem.teeth
     duration = periods * period
-    errors = [abs(float(summary[name] - companion[name])) for name in ("y_max", "y_min")]
-    if companion["status"] != sweep.OK:
-        errors = [np.inf, np.inf]
+    errors = [np.nan, np.nan]
+    if companion is not None:
+        failed = companion["status"] != sweep.OK
+        errors = [
+            math.inf if failed else abs(float(summary[name] - companion[name]))
+            for name in ("y_max", "y_min")
+        ]
     return Response(
         status="ok",
         period=period,
@@ -215,7 +228,8 @@ def _response(problem, run, summary, companion, strobes, extrema, samples, toler
         turning_points_per_period=len(extrema) / periods,
         y_max_error=errors[0],
         y_min_error=errors[1],
-        sensitive=max(errors) > SENSITIVE * tolerance,
+        final_state=tuple(summary["final"].tolist()),
+        sensitive=any(error > SENSITIVE * tolerance for error in errors),
         samples=samples,
     )
 

@@ -73,6 +73,10 @@ class Problem:
         Mesh phase at the start of the run, in mesh periods.
     revolutions, kept_revolutions : int
         Revolutions of the wheels that are run, and how many of the last are measured.
+    initial_state : tuple of four float, optional
+        u, u', b, b' at the start, with u = R_b (phi_3 + phi_2) and b = y_3 - y_2, in place of
+        rest in static equilibrium: another initial velocity, or the end of a run before it in a
+        sweep.
     """
 
     nu: float
@@ -97,6 +101,7 @@ class Problem:
     initial_phase: float = 0.0
     revolutions: int = 5
     kept_revolutions: int = 1
+    initial_state: tuple[float, float, float, float] | None = None
 
     @property
     def period(self) -> float:

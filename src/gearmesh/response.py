@@ -58,6 +58,8 @@ class Response:
         Mean number of extrema in a kept mesh period.
     y_max_error, y_min_error : float
         Estimated errors of `y_max` and `y_min`.
+    final_state : tuple of four float
+        u, u', b, b' at the end of the run (`gearmesh.taylor`), to go on from in a sweep.
     sensitive : bool
         Whether the orbit amplifies integration errors (grazing, chaos).
     samples : Samples or None
@@ -80,5 +82,6 @@ class Response:
     turning_points_per_period: float = np.nan
     y_max_error: float = np.nan
     y_min_error: float = np.nan
+    final_state: tuple[float, float, float, float] | None = None
     sensitive: bool = False
     samples: Samples | None = None

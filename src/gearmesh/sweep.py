@@ -117,6 +117,7 @@ SUMMARY = np.dtype(
         ("square_integral", np.float64),
         ("loss_time", np.float64),
         ("inverse_time", np.float64),
+        ("final", np.float64, 4),
     ]
 )
 """What the kernel measures on a run besides its extrema, strobes and samples."""
@@ -272,6 +273,9 @@ def _next_segment(work, width, lane, run, place, summary, strobes):
             summary.square_integral = _get(work, width, SQUARE_INTEGRAL, lane)
             summary.loss_time = _get(work, width, LOSS_TIME, lane)
             summary.inverse_time = _get(work, width, INVERSE_TIME, lane)
+            for i in range(2):
+                summary.final[i] = _get(work, width, U + i, lane)
+                summary.final[2 + i] = _get(work, width, B + i, lane)
             summary.steps = int(_get(work, width, STEPS, lane))
             return True
     _set(work, width, SINCE_STOP, lane, 0.0)
