@@ -5,11 +5,10 @@ takes text with a unit and holds a float in the unit that the field states.
 """
 
 import difflib
-from collections.abc import Iterable, Mapping
-from typing import Any, ClassVar, TypeVar, get_args
+from collections.abc import Iterable, Mapping, Sequence
+from typing import Any, ClassVar, NamedTuple, TypeVar, get_args
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError, ValidationInfo, field_validator
-from pydantic.fields import FieldInfo
 
 from gearmesh import units
 from gearmesh.errors import InputError
@@ -91,10 +90,11 @@ def validate(model: type[Model], data: object, where: str, changed: Mapping[str,
         return model.model_validate(data)
     except ValidationError as error:
         slips = _slips(model, data, error)
-    key, text = slips[0]
-    origin = _origin(key, where, changed)
+    slip = slips[0]
+    origin = _origin(slip.about, where, changed)
     more = f" (and {len(slips) - 1} more)" if len(slips) > 1 else ""
-    raise InputError(": ".join(part for part in (origin, key, text) if part) + more) from None
+    line = ": ".join(part for part in (origin, slip.key, slip.text) if part) + more
+    raise InputError(" ".join(line.split())) from None
 
 
 def _origin(key: str, where: str, changed: Mapping[str, str]) -> str:
@@ -102,7 +102,7 @@ def _origin(key: str, where: str, changed: Mapping[str, str]) -> str:
     for name, origin in changed.items():
         if f"{key}.".startswith(f"{name}."):
             return origin
-        if name.startswith(f"{key}."):
+        if not key or name.startswith(f"{key}."):
             return f"{where} with {origin}"
     return where
 
@@ -128,66 +128,54 @@ def shown(value: object) -> str:
     return text if len(text) <= _SHOWN else text[:_SHOWN] + "…"
 
 
-def _slips(model: type[BaseModel], data: object, error: ValidationError) -> list[tuple[str, str]]:
-    """Return (key, what is wrong with it) for every slip: unknown keys first, missing ones last."""
+class _Slip(NamedTuple):
+    key: str
+    text: str
+    about: str  # the key or section whose values are at fault
+
+
+def _slips(model: type[BaseModel], data: object, error: ValidationError) -> list[_Slip]:
+    """Tell every slip: unknown keys first, missing ones last."""
     unknown, wrong, missing = [], [], []
     for item in error.errors(include_url=False, include_input=False):
         loc = item["loc"]
-        key = ".".join(str(part) for part in loc)
+        key = ".".join(str(part)[:_SHOWN] for part in loc)
         if item["type"] == "extra_forbidden":
-            choices = _keys(model, loc[:-1])
+            choices = _model_at(model, loc[:-1]).model_fields
             hint = nearest(str(loc[-1]), choices) or f"; allowed are {', '.join(choices)}"
-            unknown.append((key, f"unknown key{hint}"))
+            unknown.append(_Slip(key, f"unknown key{hint}", key))
         elif item["type"] == "missing":
-            missing.append((key, f"missing{_purpose(model, loc)}"))
+            missing.append(_Slip(key, f"missing{_purpose(model, loc)}", key))
         else:
             reason = _EXPECTED.get(item["type"], item["msg"]).removeprefix("Value error, ")
-            found = _at(data, loc)
-            if item["type"] == "value_error" and _is_section(model, loc):
+            if item["type"] == "value_error" and _model_at(model, loc):
                 name, reason = reason.split(": ", 1)  # a check of a section names the key itself
-                wrong.append((f"{key}.{name}".lstrip("."), reason))
+                wrong.append(_Slip(f"{key}.{name}".lstrip("."), reason, key))
             else:
-                wrong.append((key, f"found {shown(found)}; {reason}"))
-    suggested = " ".join(text for _, text in unknown)
-    missing = [(k, t) for k, t in missing if f"'{k.rpartition('.')[2]}'" not in suggested]
+                wrong.append(_Slip(key, f"found {shown(_at(data, loc))}; {reason}", key))
+    suggested = " ".join(slip.text for slip in unknown)
+    missing = [slip for slip in missing if f"'{slip.key.rpartition('.')[2]}'" not in suggested]
     return unknown + wrong + missing
 
 
-def _field(model: type[BaseModel], loc: tuple[int | str, ...]) -> FieldInfo | None:
-    """Find the declaration of a key, through nested sections."""
-    for i, part in enumerate(loc):
+def _model_at(model: type[BaseModel], loc: Sequence[int | str]) -> type[BaseModel] | None:
+    """Return the section at a key, None if there is a value there."""
+    for part in loc:
         info = model.model_fields.get(str(part))
-        if info is None or i == len(loc) - 1:
-            return info
-        inner = _section(info)
-        if inner is None:
-            return info
-        model = inner
-    return None
+        types = (info.annotation, *get_args(info.annotation)) if info else ()
+        inner = [t for t in types if isinstance(t, type) and issubclass(t, BaseModel)]
+        if not inner:
+            return None
+        model = inner[0]
+    return model
 
 
-def _section(info: FieldInfo) -> type[BaseModel] | None:
-    types = (info.annotation, *get_args(info.annotation))
-    return next((t for t in types if isinstance(t, type) and issubclass(t, BaseModel)), None)
+def _purpose(model: type[BaseModel], loc: Sequence[int | str]) -> str:
+    section = _model_at(model, loc[:-1])
+    return f"; wanted is {section.model_fields[loc[-1]].description}" if section else ""
 
 
-def _is_section(model: type[BaseModel], loc: tuple[int | str, ...]) -> bool:
-    info = _field(model, loc)
-    return not loc or (info is not None and _section(info) is not None)
-
-
-def _keys(model: type[BaseModel], loc: tuple[int | str, ...]) -> list[str]:
-    info = _field(model, loc) if loc else None
-    inner = _section(info) if info else model
-    return list(inner.model_fields) if inner else []
-
-
-def _purpose(model: type[BaseModel], loc: tuple[int | str, ...]) -> str:
-    info = _field(model, loc)
-    return f"; wanted is {info.description}" if info and info.description else ""
-
-
-def _at(data: object, loc: tuple[int | str, ...]) -> object:
+def _at(data: object, loc: Sequence[int | str]) -> object:
     for part in loc:
         try:
             data = data[part]

@@ -45,7 +45,7 @@ class _Loader(yaml.SafeLoader):
             if not isinstance(key, str):
                 raise _slip("a key is not a text", key_node)
             if key in seen:
-                raise _slip(f"key '{key}' stands twice", key_node)
+                raise _slip(f"key {key!r:.60} stands twice", key_node)
             seen.add(key)
         return super().construct_mapping(node, deep)
 

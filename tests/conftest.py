@@ -1,0 +1,30 @@
+"""What tests share: the root of the project, and the study of the paper."""
+
+from pathlib import Path
+
+import pytest
+from hypothesis import settings
+
+from gearmesh.configuration import Study, load_study
+from gearmesh.parameters import Parameters
+
+# Compilation and a busy machine make single examples slow; tests never judge times.
+settings.register_profile("gearmesh", deadline=None, derandomize=True)
+settings.load_profile("gearmesh")
+
+ROOT = Path(__file__).parents[1]
+
+
+@pytest.fixture(scope="session")
+def root() -> Path:
+    return ROOT
+
+
+@pytest.fixture(scope="session")
+def study() -> Study:
+    return load_study(ROOT / "config" / "paper.yaml")
+
+
+@pytest.fixture(scope="session")
+def parameters(study: Study) -> Parameters:
+    return study.parameters
