@@ -15,6 +15,7 @@ from numba import njit
 from gearmesh.lanes import any_lane, fma, load, magnitude, select, spread
 from gearmesh.taylor import (
     ORDER,
+    REST,
     SIGN,
     STEP,
     V,
@@ -26,7 +27,7 @@ from gearmesh.taylor import (
 
 N_SAMPLES = 8
 # A step of Halley's method this small leaves an error of its cube.
-_CONVERGED = 1e-6
+_CONVERGED = 1e-7
 # Far enough for the value at the minimum, which is flat there.
 _DIP_PLACE = 1e-7
 _MOST_ITERATIONS = 60
@@ -34,9 +35,13 @@ _MOST_ITERATIONS = 60
 
 @njit(inline="always")
 def _halley(at, value, slope, bend):
-    """Return the next place of Halley's method; `bend` is half the curvature."""
+    """Return the next place of Halley's method, and whether it is the last; `bend` is f''/2.
+
+    Newton's step decides: beside a double root Halley's is small far from any root.
+    """
     newton = value / slope
-    return at - newton / (1.0 - newton * bend / slope)
+    settled = magnitude(newton) <= spread(at, _CONVERGED)
+    return at - newton / (1.0 - newton * bend / slope), settled
 
 
 @njit(inline="always")
@@ -77,6 +82,7 @@ def bracket_turning(like, work):
     before = sign * load(like, work, V)
     slope_before = sign * load(like, work, V + 1)
     place_before = zero
+    rest = spread(like, REST)
     width = step * (1.0 / N_SAMPLES)
     for j in range(1, N_SAMPLES + 1):
         place = width * float(j)
@@ -90,13 +96,13 @@ def bracket_turning(like, work):
             suspect = dips & (fma(slope_before, where, before) <= zero)
             if any_lane(suspect):
                 lowest, at = _dip(like, work, sign, suspect, place_before, place)
-                suspect = suspect & (lowest < zero)
+                suspect = suspect & (lowest < -rest)
                 low = select(suspect, place_before, low)
                 high = select(suspect, at, high)
                 low_value = select(suspect, before, low_value)
                 high_value = select(suspect, lowest, high_value)
                 found = found | suspect
-        turns = (value < zero) & ~found
+        turns = (value < -rest) & ~found
         low = select(turns, place_before, low)
         high = select(turns, place, high)
         low_value = select(turns, before, low_value)
@@ -120,8 +126,7 @@ def turning_point(like, work, wanted, low, high, at):
         forward = sign * value > zero
         low = select(active & forward, at, low)
         high = select(active & ~forward, at, high)
-        following = _halley(at, value, slope, bend)
-        settled = magnitude(following - at) <= spread(like, _CONVERGED)
+        following, settled = _halley(at, value, slope, bend)
         inside = (following > low) & (following < high)
         following = select(inside | settled, following, 0.5 * (low + high))
         at = select(active, following, at)
@@ -148,8 +153,7 @@ def crossing(like, work, level, wanted, end):
         short = sign * (value - level) < zero
         low = select(active & short, at, low)
         high = select(active & ~short, at, high)
-        following = _halley(at, value - level, slope, bend)
-        settled = magnitude(following - at) <= spread(like, _CONVERGED)
+        following, settled = _halley(at, value - level, slope, bend)
         inside = (following > low) & (following < high)
         following = select(inside | settled, following, 0.5 * (low + high))
         at = select(active, following, at)

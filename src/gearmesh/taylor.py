@@ -72,13 +72,16 @@ _FIRST = 4 * _SPAN
 ) = range(_FIRST, _FIRST + 30)
 N_ROWS = SCRATCH + 3
 
+REST = 1e-14
+"""Velocities and accelerations below this are rounding errors of a body at rest."""
+
 LONGEST_STEP = 2.0
 """Bound of a step in tau_s: the sampling of a step for events stays fine."""
 
 
 @njit(inline="never")
 def direction(like, work):
-    """Return the sign of v, or where v is 0 that of the acceleration."""
+    """Return the sign of v, where v rests that of the acceleration, where both rest the last."""
     y = load(like, work, U) + load(like, work, B)
     v = load(like, work, U + 1) + load(like, work, B + 1)
     elastic = load(like, work, ELASTIC) * (y - load(like, work, OFFSET))
@@ -86,9 +89,15 @@ def direction(like, work):
     bearing = load(like, work, TWO_MU) * elastic
     bearing = fma(load(like, work, BEARING_STIFFNESS), load(like, work, B), bearing)
     bearing = fma(load(like, work, BEARING_DAMPING), load(like, work, B + 1), bearing)
+    acceleration = push - bearing
     zero = spread(like, 0.0)
-    leading = select(v == zero, push - bearing, v)
-    return select(leading < zero, spread(like, -1.0), spread(like, 1.0))
+    rest = spread(like, REST)
+    leading = select(magnitude(v) <= rest, acceleration, v)
+    one = spread(like, 1.0)
+    before = load(like, work, SIGN)
+    before = select(before == zero, one, before)
+    now = select(leading < zero, -one, one)
+    return select(magnitude(leading) <= rest, before, now)
 
 
 def _product(left, right, k):
