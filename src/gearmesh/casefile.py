@@ -77,7 +77,7 @@ class Field:
 _V = "dy/dtau_s (tau_s = Omega_s t)"
 
 FIELDS = (
-    Field("extremum_time", "extremum", "s", "time of a local extremum of y from the start of the run"),
+    Field("extremum_time", "extremum", "s", "time of a local extremum of y, from the start"),
     Field("extremum_y", "extremum", "mm", "relative motion y at its local extremum"),
     Field("extremum_kind", "extremum", "1", "kind of a local extremum", "i1", EXTREMUM_KINDS),
     Field("strobe_y", "boundary", "mm", "relative motion y after n mesh periods"),
@@ -99,7 +99,7 @@ FIELDS = (
 """The variables of every case."""
 
 SAMPLE_FIELDS = (
-    Field("time", "sample", "s", "time from the start of the run"),
+    Field("time", "sample", "s", "time, from the start"),
     Field("y", "sample", "mm", "relative motion in the mesh"),
     Field("v", "sample", "mm", f"relative velocity {_V}"),
     Field("a", "sample", "mm", "relative acceleration d2y/dtau_s2 (tau_s = Omega_s t)"),
@@ -128,16 +128,20 @@ def record(response: Response, parameters: Parameters) -> Record:
         "N/mm": parameters.stiffness_mean,
         "N": parameters.static_force,
     }
-    boundaries = parameters.run.revolutions * parameters.printed.teeth + 1
     columns: Record = {}
     for field, value in _values(response):
         array = np.asarray(value, field.kind)
         if field.dimension == "boundary" and array.size == 0:
-            array = np.full(boundaries, np.nan)  # of a run that failed
+            array = np.full(boundaries(parameters), np.nan)  # of a run that failed
         if field.relative:
             columns[field.relative] = array
         columns[field.name] = array * scales[field.unit] if field.unit in scales else array
     return columns
+
+
+def boundaries(parameters: Parameters) -> int:
+    """Return the number of boundaries of mesh periods in a run."""
+    return parameters.run.revolutions * parameters.printed.teeth + 1
 
 
 def _values(response: Response) -> Iterator[tuple[Field, object]]:
@@ -184,12 +188,13 @@ def attributes(parameters: Parameters, case: Case) -> dict[str, str | float]:
         "variant": case.variant.name,
         "nu_s": case.nu,
         "case_sha256": case_digest(parameters, case),
-        **_common_attributes(parameters),
+        **common_attributes(parameters),
     }
 
 
 @functools.lru_cache(maxsize=4)
-def _common_attributes(parameters: Parameters) -> dict[str, str | float]:
+def common_attributes(parameters: Parameters) -> dict[str, str | float]:
+    """Return the attributes that all files of a study share."""
     return {
         "parameters": parameters.canonical(),
         "parameters_sha256": parameters.digest(),
@@ -235,9 +240,16 @@ def write_case(path: Path | str, attributes: Mapping[str, str | float], columns:
             variable[...] = columns[variable.name]
 
 
-def define(file, field: Field, name: str, dimensions: tuple[str, ...], **storage):
+def define(
+    file: netCDF4.Dataset,
+    field: Field,
+    name: str,
+    dimensions: tuple[str, ...],
+    fill_value: float | bool = False,
+    **storage: object,
+) -> netCDF4.Variable:
     """Create the variable of a field, or of its twin, with its attributes."""
-    variable = file.createVariable(name, field.kind, dimensions, fill_value=False, **storage)
+    variable = file.createVariable(name, field.kind, dimensions, fill_value=fill_value, **storage)
     relative = name != field.name
     stated = {
         "units": "1" if relative else field.unit,

@@ -130,6 +130,10 @@ class Plan(Section):
     time_courses: dict[str, tuple[Nu, ...]] = Field(
         default_factory=dict, description="frequencies with a time course, for each variant"
     )
+    cases_per_job: int = quantity("1", "", "cases that one job computes, at the most", 1, 100_000)
+    case_files: bool = Field(
+        True, description="whether each case has a file of its own, not only those with time courses"
+    )
 
     @field_validator("variants", mode="before")
     @classmethod

@@ -10,13 +10,16 @@ NOTEBOOKS = Path("notebooks")
 
 RESULTS = Path("results")
 CASES = RESULTS / "cases"
+BATCHES = RESULTS / "batches"
 DATASETS = RESULTS / "datasets"
 RESONANCE = DATASETS / "resonance.nc"
 BIFURCATION = DATASETS / "bifurcation.nc"
+THRESHOLDS = DATASETS / "thresholds.json"
 FIGURES = RESULTS / "figures"
 EXECUTED_NOTEBOOKS = RESULTS / "notebooks"
 CHECKS = RESULTS / "checks"
 LEDGER = RESULTS / "claims.json"
+VERDICT = RESULTS / "verdict.txt"
 REPORT = RESULTS / "report" / "index.html"
 
 FIGURE_NAMES = tuple(f"fig{number}" for number in range(1, 8))
@@ -38,6 +41,11 @@ def nu_label(nu: float) -> str:
 def case_file(variant: str, nu: float) -> Path:
     """Return the file of one case, such as ``results/cases/c-material/nu-0.6600.nc``."""
     return CASES / variant / f"nu-{nu_label(nu)}.nc"
+
+
+def batch_file(name: str) -> Path:
+    """Return the file that hands the cases of one job on to the datasets."""
+    return BATCHES / f"{name}.nc"
 
 
 def figure_files(name: str) -> tuple[Path, Path]:

@@ -1,0 +1,46 @@
+# The pipeline: cases -> datasets -> figures and checks -> ledger -> report -> verdict.
+#
+#   snakemake                                           the study of the paper
+#   snakemake --config study=config/smoke.yaml          another study
+#   snakemake --profile workflow/profiles/slurm         on a cluster
+#
+# This file loads, validates and includes; the rules stand by stage in workflow/rules.
+import sys
+
+from snakemake.utils import min_version
+
+from gearmesh import job, paths, pipeline
+from gearmesh.errors import InputError
+
+min_version("9.0")
+
+try:
+    PLAN = pipeline.load(config, workflow.configfiles)
+    if workflow.is_main_process:
+        PLAN.drop_damaged(only_tell=workflow.dryrun)
+except InputError as error:
+    job.tell(f"error: {error}")
+    sys.exit(job.BAD_INPUT)
+
+PYTHON, STUDY = pipeline.python(), str(PLAN.config)
+
+
+rule all:
+    input:
+        PLAN.case_files(PLAN.cases),
+        paths.VERDICT,
+
+include: "workflow/rules/cases.smk"
+include: "workflow/rules/datasets.smk"
+include: "workflow/rules/figures.smk"
+include: "workflow/rules/claims.smk"
+include: "workflow/rules/report.smk"
+
+onstart:
+    job.begin_run(len(PLAN.cases))
+
+onsuccess:
+    job.tell_summary()
+
+onerror:
+    job.tell_summary()

@@ -1,0 +1,142 @@
+"""What the Snakefile asks of a study: its files, its batches, and what each stage depends on."""
+
+import hashlib
+import sys
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+
+from gearmesh import batches, casefile, paths, provenance
+from gearmesh.batches import Batch
+from gearmesh.configuration import Case, Study, load_study
+from gearmesh.errors import InputError
+from gearmesh.job import tell
+
+SCRIPTS = Path("workflow/scripts")
+_SETTINGS = ("study",)
+
+
+@dataclass(frozen=True)
+class Plan:
+    """A study as the pipeline sees it.
+
+    Attributes
+    ----------
+    config : Path
+        Its configuration file.
+    study : Study
+        What stands in it.
+    """
+
+    config: Path
+    study: Study
+
+    @cached_property
+    def cases(self) -> tuple[Case, ...]:
+        """All cases."""
+        return tuple(self.study.cases())
+
+    @cached_property
+    def batches(self) -> list[Batch]:
+        """The batches in which they are computed."""
+        return batches.partition(self.cases, self.study.study.cases_per_job)
+
+    @cached_property
+    def recipe(self) -> str:
+        """What all cases depend on besides variant and frequency: parameters and versions."""
+        return _digest((self.study.parameters.digest(), provenance.versions()))
+
+    @cached_property
+    def grid(self) -> str:
+        """What the datasets depend on besides the batches: their title and their axes."""
+        plan = [(variant.name, nus) for variant, nus in self.study.study.frequencies()]
+        return _digest((self.study.title, plan))
+
+    def case_file(self, case: Case) -> str:
+        """Return the file of a case."""
+        return str(paths.case_file(case.variant.name, case.nu))
+
+    def case_files(self, cases: Iterable[Case]) -> list[str]:
+        """Return the files of those cases that have one of their own."""
+        return [self.case_file(case) for case in cases if self.has_file(case)]
+
+    def has_file(self, case: Case) -> bool:
+        """Tell whether a case has a file of its own; one with a time course always has."""
+        return self.study.study.case_files or case.time_course
+
+    def time_courses(self, variants: Sequence[str]) -> list[str]:
+        """Return the case files of some variants that hold a time course."""
+        wanted = [c for c in self.cases if c.time_course and c.variant.name in variants]
+        return self.case_files(wanted)
+
+    def members(self, batch: Batch) -> str:
+        """Return what a batch depends on besides the recipe: which cases are in it."""
+        return _digest([(c.variant.name, c.nu, c.time_course) for c in batch.cases])
+
+    def drop_damaged(self, only_tell: bool) -> None:
+        """Delete files that are not as they were written, so that they are made again.
+
+        Parameters
+        ----------
+        only_tell : bool
+            Name them, but let them be.
+        """
+        sealed = [self.case_file(case) for case in self.cases if self.has_file(case)]
+        sealed += [str(paths.batch_file(batch.name)) for batch in self.batches]
+        sealed += [str(paths.RESONANCE), str(paths.BIFURCATION)]
+        for path in map(Path, sealed):
+            if path.exists() and not casefile.is_whole(path):
+                tell(f"{path}: damaged, to be made again")
+                if not only_tell:
+                    path.unlink()
+
+
+def load(config: Mapping[str, object], configfiles: Sequence[Path | str]) -> Plan:
+    """Load the study that a run of Snakemake asks for.
+
+    Parameters
+    ----------
+    config : mapping
+        Settings of the command line (``--config study=FILE``).
+    configfiles : sequence
+        Files of ``--configfile``, which names a study as well.
+
+    Raises
+    ------
+    InputError
+        One line, if a setting or the study is wrong.
+    """
+    if configfiles:
+        path = Path(configfiles[-1])
+    else:
+        for name in config:
+            if name not in _SETTINGS:
+                raise InputError(f"--config {name}: unknown; allowed is study=FILE")
+        path = Path(str(config.get("study", paths.PAPER)))
+    return Plan(path, load_study(path))
+
+
+def script(name: str) -> str:
+    """Return the file of a script of the pipeline."""
+    return str(SCRIPTS / f"{name}.py")
+
+
+def sources(*files: str) -> list[str]:
+    """Return files together with the modules that they import, relative to the project's root."""
+    found = [*map(Path, files), *provenance.sources(*files)]
+    return [_relative(file) for file in found]
+
+
+def _relative(file: Path) -> str:
+    root = Path.cwd()
+    return str(file.relative_to(root) if file.is_relative_to(root) else file)
+
+
+def python() -> str:
+    """Return the interpreter that runs the scripts: the one that runs Snakemake."""
+    return sys.executable
+
+
+def _digest(stated: object) -> str:
+    return hashlib.sha256(repr(stated).encode()).hexdigest()

@@ -1,0 +1,22 @@
+# Integrate: a few jobs, each a batch of cases; every case has a declared file of its own.
+COMPUTE = pipeline.script("compute_cases")
+
+for batch in PLAN.batches:
+
+    rule:
+        name:
+            f"cases_{batch.index}"
+        input:
+            pipeline.sources(COMPUTE),
+        output:
+            update(PLAN.case_files(batch.cases)),
+            batch=str(paths.batch_file(batch.name)),
+        params:
+            recipe=PLAN.recipe,
+            members=PLAN.members(batch),
+            index=batch.index,
+        resources:
+            mem_mb=1000,
+            runtime=30,
+        shell:
+            "{PYTHON} {COMPUTE} {STUDY} {params.index}"
