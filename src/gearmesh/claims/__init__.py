@@ -1,10 +1,14 @@
 """The paper's claims: load them, check them, put the results together.
 
-A notebook or a rule needs three calls::
+A notebook or a rule needs these calls::
 
-    ledger = load_ledger("config/claims.yaml")
-    entries = check_figure("fig2", Evidence(parameters=..., ...), ledger, "results/checks/fig2.json")
-    verdict(collect(ledger, Path("results/checks").glob("*.json"), "results/claims.json"))
+    ledger = load_ledger(paths.CLAIMS)
+    evidence = Evidence(parameters=study.parameters, thresholds=json.loads(...), time_courses={...})
+    entries = check_figure("fig2", evidence, ledger, paths.check_file("fig2"))
+    print(verdict(collect(ledger, all_check_files, paths.LEDGER)))
+
+`gearmesh.claims.ledger` holds claims, entries and the verdict; `printed` and `fig2` to `fig7` hold
+what is measured for each claim.
 """
 
 from gearmesh.claims.checking import check_figure

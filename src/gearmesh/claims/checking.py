@@ -4,6 +4,7 @@ from collections.abc import Callable, Iterable
 from pathlib import Path
 from typing import Any
 
+from gearmesh.claims import fig2, fig3, fig4, fig5, fig6, fig7, printed
 from gearmesh.claims.evidence import Evidence, NotInStudy
 from gearmesh.claims.ledger import (
     DEVIATES,
@@ -20,7 +21,15 @@ from gearmesh.errors import InputError
 Measure = Callable[[Evidence], tuple[Any, str]]
 """Measures what a claim speaks of; returns the value (see `ledger.holds`) and a line on it."""
 
-MEASURES: dict[str, Measure] = {}
+MEASURES: dict[str, Measure] = {
+    **printed.MEASURES,
+    **fig2.MEASURES,
+    **fig3.MEASURES,
+    **fig4.MEASURES,
+    **fig5.MEASURES,
+    **fig6.MEASURES,
+    **fig7.MEASURES,
+}
 """How each claim is measured, by its id."""
 
 

@@ -1,36 +1,49 @@
 """What a check may look at."""
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
+
+from gearmesh.parameters import Parameters
 
 if TYPE_CHECKING:
     import xarray as xr
 
-    from gearmesh.parameters import Parameters
-
 
 class NotInStudy(LookupError):
-    """The study lacks what a claim speaks of: a variant, a frequency, a threshold."""
+    """The study lacks what a claim speaks of: a variant, a frequency."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class Evidence:
-    """All that the checks of a figure may need; what a figure does not need may be left out.
+    """All that checks look at; what the claims of a figure do not need may be left out.
 
     Attributes
     ----------
     parameters : Parameters
         The parameters of the study.
-    resonance : xarray.Dataset or None
-        `results/datasets/resonance.nc`.
     thresholds : mapping
         `results/datasets/thresholds.json`: what `gearmesh.thresholds.locate` returns.
     time_courses : mapping
-        (variant, nu) -> case file with its time course, opened with xarray.
+        (variant, nu) -> case file with its time course, opened with xarray (Figs. 4 and 7).
     """
 
-    parameters: "Parameters"
-    resonance: "xr.Dataset | None" = None
-    thresholds: Mapping[str, Any] = field(default_factory=dict)
+    parameters: Parameters
+    thresholds: Mapping[str, Mapping[str, Any]] = field(default_factory=dict)
     time_courses: "Mapping[tuple[str, float], xr.Dataset]" = field(default_factory=dict)
+
+    def located(self, observable: str, names: Iterable[str]) -> dict[str, Any]:
+        """Return an observable for each of `names`; raise NotInStudy if one is lacking."""
+        known = self.thresholds.get(observable, {})
+        names = list(names)
+        lacking = [name for name in names if name not in known]
+        if lacking:
+            raise NotInStudy(f"{observable} of {', '.join(lacking)}")
+        return {name: known[name] for name in names}
+
+    def time_course(self, variant: str, nu: float) -> "xr.Dataset":
+        """Return a case with its time course; raise NotInStudy if it is lacking."""
+        for (name, at), case in self.time_courses.items():
+            if name == variant and abs(at - nu) < 1e-9 and "y_rel" in case:
+                return case
+        raise NotInStudy(f"time course of {variant} at {nu:g}")

@@ -8,10 +8,11 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Literal
 
-import yaml
-from pydantic import BaseModel, ConfigDict, Field, ValidationError, field_validator, model_validator
+from pydantic import Field, field_validator, model_validator
 
+from gearmesh import yamlfile
 from gearmesh.errors import InputError
+from gearmesh.schema import Section, shown, validate
 
 REPRODUCED, DEVIATES, NOT_TESTABLE = "reproduced", "deviates", "not_testable"
 
@@ -19,13 +20,9 @@ Status = Literal["reproduced", "deviates", "not_testable"]
 Kind = Literal["printed number", "threshold", "ordering", "shape"]
 Figure = Literal["printed", "fig2", "fig3", "fig4", "fig5", "fig6", "fig7"]
 
-STRICT = ConfigDict(extra="forbid", frozen=True)
 
-
-class Bound(BaseModel):
+class Bound(Section):
     """A value that is bounded on one side or on both."""
-
-    model_config = STRICT
 
     at_least: float | None = None
     at_most: float | None = None
@@ -42,14 +39,12 @@ class Bound(BaseModel):
 Target = bool | float | Bound
 
 
-class Claim(BaseModel):
+class Claim(Section):
     """One statement of the paper, and what counts as showing it.
 
     `expected` is a number (then `tolerance` says how far off the measured value may be), a
     `Bound`, or true; or a mapping from the names of several quantities to such targets.
     """
-
-    model_config = STRICT
 
     id: str = Field(pattern=r"^[A-Z][0-9]+(\.[0-9]+)?$", description="P1, F2.1, ...")
     where: str = Field(min_length=1, description="place in the paper")
@@ -83,7 +78,9 @@ class Claim(BaseModel):
         for name, target, tolerance in self.targets():
             is_number = isinstance(target, float) and not isinstance(target, bool)
             if is_number != (tolerance is not None):
-                raise ValueError(f"tolerance{name and f' of {name!r}'} is for a number, needed there")
+                raise ValueError(
+                    f"tolerance{name and f' of {name!r}'} is for a number, needed there"
+                )
             if tolerance is not None and not 0 <= tolerance < math.inf:
                 raise ValueError(f"tolerance {tolerance} is not a number >= 0")
         if isinstance(self.tolerance, dict) and not isinstance(self.expected, dict):
@@ -179,39 +176,22 @@ def holds(claim: Claim, measured: Any) -> bool:
     )
 
 
-def _first_problem(error: ValidationError) -> str:
-    problem = error.errors()[0]
-    place = ".".join(str(part) for part in problem["loc"])
-    found = problem["input"]
-    shown = f", found {found!r}" if isinstance(found, str | int | float) else ""
-    return f"{place}: {problem['msg']}{shown}" if place else f"{problem['msg']}{shown}"
-
-
 def load_ledger(path: Path) -> list[Claim]:
-    """Read and check `config/claims.yaml`.
+    """Read and check `config/claims.yaml`: a mapping from the id of a claim to the rest of it.
 
     Raises
     ------
     InputError
         One line that names the file, the claim and the key.
     """
-    try:
-        content = yaml.safe_load(Path(path).read_text(encoding="utf-8"))
-    except (OSError, UnicodeDecodeError, yaml.YAMLError) as error:
-        raise InputError(f"{path}: cannot be read: {' '.join(str(error).split())}") from None
-    if not isinstance(content, list) or not content:
-        raise InputError(f"{path}: a list of claims is expected")
-    claims = []
-    for number, item in enumerate(content, start=1):
-        name = item.get("id", f"number {number}") if isinstance(item, dict) else f"number {number}"
-        try:
-            claims.append(Claim.model_validate(item))
-        except ValidationError as error:
-            raise InputError(f"{path}: claim {name}: {_first_problem(error)}") from None
-    repeated = [name for name, count in Counter(c.id for c in claims).items() if count > 1]
-    if repeated:
-        raise InputError(f"{path}: claim {repeated[0]}: id given more than once")
-    return claims
+    content = yamlfile.read_mapping(Path(path))
+    for name, claim in content.items():
+        if not isinstance(claim, dict):
+            raise InputError(f"{path}: {name}: found {shown(claim)}: allowed is a mapping of keys")
+    return [
+        validate(Claim, {"id": name, **claim}, f"{path}: {name}", {})
+        for name, claim in content.items()
+    ]
 
 
 def write_entries(path: Path, entries: Iterable[Entry]) -> None:
@@ -231,10 +211,12 @@ def read_entries(path: Path) -> list[Entry]:
         If the file is missing, cut short or not a list of entries.
     """
     try:
-        return [Entry.model_validate(item) for item in json.loads(Path(path).read_text("utf-8"))]
-    except (OSError, ValueError, TypeError) as error:
-        cause = _first_problem(error) if isinstance(error, ValidationError) else error
-        raise InputError(f"{path}: not a file of checked claims: {cause}") from None
+        content = json.loads(Path(path).read_text("utf-8"))
+    except (OSError, ValueError) as error:
+        raise InputError(f"{path}: not a file of checked claims ({error})") from None
+    if not isinstance(content, list):
+        raise InputError(f"{path}: found {shown(content)}: allowed is a list of checked claims")
+    return [validate(Entry, item, str(path), {}) for item in content]
 
 
 def collect(ledger: Iterable[Claim], checks: Iterable[Path], output: Path) -> list[Entry]:

@@ -1,0 +1,107 @@
+"""Search along one axis by batches: where something changes, jumps or peaks.
+
+Every function takes a callable that evaluates a whole batch of places at once, because a batch of
+runs costs little more than one: the interval is cut into `PARTS` pieces each time, not into two.
+"""
+
+from collections.abc import Callable
+
+import numpy as np
+
+PARTS = 9
+"""Pieces of an interval: eight new places inside, one for each lane of the solver."""
+
+Batch = Callable[[np.ndarray], np.ndarray]
+"""Places, shape (n,), to values, shape (n,)."""
+
+
+def _cut(low: float, high: float) -> np.ndarray:
+    places = np.linspace(low, high, PARTS + 1)
+    places[0], places[-1] = low, high
+    return places
+
+
+def refine_change(holds: Batch, low: float, high: float, width: float) -> tuple[float, float]:
+    """Narrow an interval over which a condition changes.
+
+    Parameters
+    ----------
+    holds : callable
+        Places to booleans; differs between `low` and `high`.
+    low, high : float
+        Ends of the interval.
+    width : float
+        Width to come down to, > 0.
+
+    Returns
+    -------
+    tuple of float
+        (low, high), no wider than `width` unless floating point ends first; the condition
+        differs between the two. Of several changes the first from `low` is followed.
+
+    Raises
+    ------
+    ValueError
+        If the condition is the same at both ends.
+    """
+    at_low, at_high = holds(np.array([low, high]))
+    if bool(at_low) == bool(at_high):
+        raise ValueError(f"nothing changes between {low} and {high}")
+    while high - low > width:
+        places = _cut(low, high)
+        if not np.all(np.diff(places) > 0):
+            break
+        changed = holds(places[1:-1]) != at_low
+        first = int(np.argmax(changed)) if changed.any() else PARTS - 1
+        low, high = places[first], places[first + 1]
+    return float(low), float(high)
+
+
+def refine_step(values: Batch, low: float, high: float, width: float) -> tuple[float, float, float]:
+    """Follow the steepest piece of a course down to a width.
+
+    Parameters
+    ----------
+    values : callable
+        Places to values.
+    low, high : float
+        Ends of the interval.
+    width : float
+        Width to come down to, > 0.
+
+    Returns
+    -------
+    tuple of float
+        (low, high, step): the piece, and how much the value changes over it. Over a jump the step
+        stays as the piece shrinks; over a slope, however steep, it shrinks with it.
+    """
+    at_low, at_high = values(np.array([low, high]))
+    while high - low > width:
+        places = _cut(low, high)
+        if not np.all(np.diff(places) > 0):
+            break
+        course = np.concatenate([[at_low], values(places[1:-1]), [at_high]])
+        sizes = np.abs(np.diff(course))
+        if np.all(np.isnan(sizes)):
+            return float(low), float(high), float("nan")
+        piece = int(np.nanargmax(sizes))
+        low, high = places[piece], places[piece + 1]
+        at_low, at_high = course[piece], course[piece + 1]
+    return float(low), float(high), float(at_high - at_low)
+
+
+def refine_peak(values: Batch, low: float, high: float, width: float) -> tuple[float, float]:
+    """Locate the greatest value of a course that has one peak in the interval.
+
+    Returns
+    -------
+    tuple of float
+        (place, value) of the greatest value met, the place to half of `width`.
+    """
+    while True:
+        places = _cut(low, high)
+        course = values(places)
+        best = int(np.nanargmax(course))
+        if high - low <= width or not np.all(np.diff(places) > 0):
+            return float(places[best]), float(course[best])
+        low, high = places[max(best - 1, 0)], places[min(best + 1, PARTS)]
