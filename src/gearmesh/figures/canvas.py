@@ -17,6 +17,9 @@ STYLE = "gearmesh.figures.gearmesh"
 WIDTH = 7.2
 """Width of a full page figure in inches."""
 
+NOT_IN_STUDY = "not in this study"
+"""What a panel says where a small study lacks what it would show."""
+
 V = "$y$′"
 A = "$y$″"
 """y' and y'', with primes that stand closer than mathtext's."""
@@ -54,6 +57,20 @@ def save(figure: Figure, path: Path | str) -> tuple[Path, Path]:
         figure.savefig(png, metadata={"Software": None})
         figure.savefig(svg, metadata={"Date": None, "Creator": None})
     return png, svg
+
+
+def note(axes: Axes, text: str) -> None:
+    """Say in an empty panel why it is empty."""
+    axes.text(
+        0.5, 0.5, text, ha="center", va="center", color=palette.GREY, transform=axes.transAxes
+    )
+
+
+def empty() -> Figure:
+    """Return a figure that says that the study lacks what it would show."""
+    figure = Figure(figsize=(WIDTH, 1.2))
+    figure.text(0.5, 0.5, NOT_IN_STUDY, ha="center", va="center", color=palette.GREY)
+    return figure
 
 
 def shade_regions(axes: Axes, backlash: float, along: str = "y") -> None:

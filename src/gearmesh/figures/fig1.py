@@ -42,13 +42,13 @@ def _draw_wheel(axes: Axes, number: int, centre: np.ndarray, outward: int) -> No
     contact = np.array((centre[0], 0.0))
     axes.plot(*np.transpose((centre, contact)), color=palette.GREY, lw=0.6)
     side = "right" if outward < 0 else "left"
-    _write(axes, centre + (0.07 * outward, -0.76 * outward), f"$R_{{b{number}}}$", ha=side)
+    _write(axes, centre - outward * np.array((-0.07, 0.76)), f"$R_{{b{number}}}$", ha=side)
     shift = 0.24 * np.array((np.cos(0.6), np.sin(0.6)))
     axes.plot(*np.transpose((centre, centre + shift)), color=palette.INK, lw=1.1)
     axes.add_patch(Circle(centre, 0.055, fc="white", ec=palette.INK, lw=0.9, zorder=5))
     axes.add_patch(Circle(centre + shift, 0.035, fc=palette.INK, lw=0, zorder=5))
     _write(axes, centre + shift + (0.06, 0.03), f"$e_{number}$", ha="left", va="center")
-    _write(axes, centre + (-0.42, -0.5), f"$m,\\ J_{number}$", color=palette.GREY)
+    _write(axes, centre - np.array((0.42, 0.5)), f"$m,\\ J_{number}$", color=palette.GREY)
     _turn(axes, centre, 0.55, (200, 115), f"$M_{number}$", palette.RED)
     _turn(axes, centre, 0.8, (75, 15), f"$\\varphi_{number}$", palette.BLUE)
 
@@ -65,7 +65,7 @@ def _gear_outline() -> np.ndarray:
     flank = np.column_stack((np.append(root, radius), np.append(half[0], half)))
     tooth = np.concatenate((flank * (1, -1), flank[::-1]))
     turns = 2 * np.pi * (np.arange(TEETH) + 0.25) / TEETH
-    r, theta = np.concatenate([tooth + (0, turn) for turn in turns]).T
+    r, theta = np.concatenate([tooth + np.array((0, turn)) for turn in turns]).T
     return np.column_stack((r * np.cos(theta), r * np.sin(theta)))
 
 

@@ -7,15 +7,17 @@ from matplotlib.figure import Figure
 
 from gearmesh.figures import palette
 from gearmesh.figures.canvas import (
+    NOT_IN_STUDY,
     WIDTH,
     course_handle,
     marker_look,
     micrometre_axis,
+    note,
     region_handles,
     shade_regions,
     styled,
 )
-from gearmesh.figures.orbit import scale
+from gearmesh.figures.orbit import present, scale
 
 PANELS = (
     ("a + b", "conservative, and linear damping", ("a-conservative",), "b"),
@@ -53,9 +55,13 @@ def draw(resonance: xr.Dataset) -> Figure:
     scales = scale(resonance)
     for axes, (tag, title, undamped, letter) in zip(grid.flat, PANELS, strict=True):
         names = [*undamped, *(f"{letter}-{kind}" for kind in DAMPED)]
+        axes.set_title(f"({tag})  {title}")
+        names = present(resonance, names, "y_max_rel")
+        if not names:
+            note(axes, NOT_IN_STUDY)
+            continue
         for name in names:
             _plot_course(axes, resonance.sel(variant=name), name.partition("-")[2])
-        axes.set_title(f"({tag})  {title}")
         _set_ordinate(axes, resonance.sel(variant=names), bool(undamped))
         shade_regions(axes, scales.backlash)
         micrometre_axis(axes, scales.static_deflection, label=axes in grid[:, 1])

@@ -8,8 +8,16 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Rectangle
 
 from gearmesh.figures import palette
-from gearmesh.figures.canvas import WIDTH, micrometre_axis, region_handles, shade_regions, styled
-from gearmesh.figures.orbit import scale
+from gearmesh.figures.canvas import (
+    NOT_IN_STUDY,
+    WIDTH,
+    micrometre_axis,
+    note,
+    region_handles,
+    shade_regions,
+    styled,
+)
+from gearmesh.figures.orbit import present, scale
 
 ROWS = (("lubricant", "•", palette.RED), ("material", "□", palette.BLUE))
 COLUMNS = (("c", "quadratic damping"), ("d", "cubic damping"), ("h", "both together"))
@@ -38,25 +46,36 @@ def draw(bifurcation: xr.Dataset) -> Figure:
     """
     figure = Figure(figsize=(WIDTH, 5.6), layout="constrained")
     grid = figure.subplots(2, 3, sharex=True, sharey="row")
-    scales = scale(bifurcation)
     for row, (kind, symbol, colour) in zip(grid, ROWS, strict=True):
-        names = [f"{letter}-{kind}" for letter, _ in COLUMNS]
-        row[0].set_ylim(*_limits(bifurcation["extremum_y_rel"].sel(variant=names)))
-        for axes, name, (letter, title) in zip(row, names, COLUMNS, strict=True):
-            _plot_extrema(axes, bifurcation.sel(variant=name), colour)
-            shade_regions(axes, scales.backlash)
-            right = micrometre_axis(axes, scales.static_deflection, label=axes is row[-1])
-            right.tick_params(labelright=axes is row[-1])
+        for axes, (letter, title) in zip(row, COLUMNS, strict=True):
             axes.set_title(f"{letter} {symbol}  {title}")
+        names = [f"{letter}-{kind}" for letter, _ in COLUMNS]
+        _draw_row(row, bifurcation, names, colour)
         row[0].set_ylabel(f"extrema of $y$ in $y_{{st}}$   ({kind} damping)")
     nu = bifurcation["nu"].values
     grid[0, 0].set_xlim(nu.min(), nu.max())
     for axes in grid[1]:
         axes.set_xlabel("tuning $\\nu_s$")
-    _add_detail(grid[1, 0], bifurcation.sel(variant="c-material"))
-    inverse = any(axes.get_ylim()[0] < -scales.backlash for axes in grid[:, 0])
+    if present(bifurcation, ["c-material"], "extremum_y_rel"):
+        _add_detail(grid[1, 0], bifurcation.sel(variant="c-material"))
+    inverse = any(axes.get_ylim()[0] < -scale(bifurcation).backlash for axes in grid[:, 0])
     figure.legend(handles=_handles(inverse), loc="outside lower center", ncols=5)
     return figure
+
+
+def _draw_row(row: np.ndarray, bifurcation: xr.Dataset, names: list[str], colour: str) -> None:
+    scales = scale(bifurcation)
+    known = present(bifurcation, names, "extremum_y_rel")
+    if known:
+        row[0].set_ylim(*_limits(bifurcation["extremum_y_rel"].sel(variant=known)))
+    for axes, name in zip(row, names, strict=True):
+        if name not in known:
+            note(axes, NOT_IN_STUDY)
+            continue
+        _plot_extrema(axes, bifurcation.sel(variant=name), colour)
+        shade_regions(axes, scales.backlash)
+        right = micrometre_axis(axes, scales.static_deflection, label=axes is row[-1])
+        right.tick_params(labelright=axes is row[-1])
 
 
 def _limits(extrema: xr.DataArray) -> tuple[float, float]:
@@ -80,7 +99,7 @@ def _add_detail(axes: Axes, course: xr.Dataset) -> None:
     near = course.sel(nu=slice(*DETAIL_X))
     if near.sizes["nu"] < 2:
         return
-    y = near["extremum_y_rel"].where(near["extremum_kind"] != 0)
+    y = near["extremum_y_rel"]
     inner_low = float(y.where(near["extremum_kind"] > 0).min())
     low, high = min(inner_low, float(y.max()) - 0.5) - 0.1, float(y.max()) + 0.1
     inset = axes.inset_axes((0.36, 0.36, 0.58, 0.34))
@@ -90,7 +109,9 @@ def _add_detail(axes: Axes, course: xr.Dataset) -> None:
     inset.tick_params(labelsize=6.5, length=2)
     inset.set_title("Detail X", fontsize=7.5, pad=2)
     inset.axvline(PAPER_END, color=palette.GREY, lw=0.6, ls=(0, (4, 2)))
-    inset.text(PAPER_END, low, " paper: 0.64", fontsize=6.5, va="bottom", color=palette.GREY)
+    inset.text(
+        PAPER_END, low, "paper: 0.64 ", fontsize=6.5, va="bottom", ha="right", color=palette.GREY
+    )
     start, end = DETAIL_X
     axes.add_patch(
         Rectangle((start, low), end - start, high - low, fill=False, ec=palette.GREY, lw=0.6)

@@ -10,7 +10,7 @@ from matplotlib.lines import Line2D
 from matplotlib.ticker import MultipleLocator
 
 from gearmesh.figures import palette
-from gearmesh.figures.canvas import WIDTH, V, region_handles, shade_regions, styled
+from gearmesh.figures.canvas import WIDTH, V, empty, region_handles, shade_regions, styled
 from gearmesh.figures.orbit import last_periods, scale, switches
 
 TUNINGS = (0.60, 1.05, 1.20)
@@ -30,7 +30,7 @@ def draw(cases: Mapping[float, xr.Dataset]) -> Figure:
     Parameters
     ----------
     cases : mapping from float to xarray.Dataset
-        Cases with their time courses, by their tuning; `TUNINGS` are drawn.
+        Cases with their time courses, by their tuning; those at `TUNINGS` are drawn.
 
     Returns
     -------
@@ -38,11 +38,12 @@ def draw(cases: Mapping[float, xr.Dataset]) -> Figure:
         A column for each tuning; from above: the phase plane of all kept periods; y, y' and the
         stiffnesses over the last 21 periods; the same over the last five.
     """
+    courses = [cases[nu] for nu in TUNINGS if nu in cases]
+    if not courses:
+        return empty()
     figure = Figure(figsize=(WIDTH, 9.6), layout="constrained")
-    rows = 1 + 3 * len(SPANS)
-    rows = 1 + 3 * len(SPANS)
-    grid = figure.subplots(rows, len(TUNINGS), height_ratios=(2.6, *[1.0] * (rows - 1)))
-    courses = [cases[nu] for nu in TUNINGS]
+    heights = (2.6, *[1.0] * (3 * len(SPANS)))
+    grid = figure.subplots(len(heights), len(courses), height_ratios=heights, squeeze=False)
     _draw_phase_planes(grid[0], courses)
     for part, periods in zip((grid[1:4], grid[4:7]), SPANS, strict=True):
         _draw_courses(part, courses, periods)
@@ -53,7 +54,7 @@ def draw(cases: Mapping[float, xr.Dataset]) -> Figure:
 
 def _draw_phase_planes(row: np.ndarray, cases: list[xr.Dataset]) -> None:
     _share(row, x=True)
-    for axes, nu, case, tag in zip(row, TUNINGS, cases, "abc", strict=True):
+    for axes, case, tag in zip(row, cases, "abc", strict=False):
         kept = scale(case)
         course = last_periods(case, kept.kept_periods)
         y, v = course["y_rel"].values, course["v_rel"].values
@@ -63,7 +64,7 @@ def _draw_phase_planes(row: np.ndarray, cases: list[xr.Dataset]) -> None:
         for (name, marker), where in zip(_POINTS.items(), switches(course), strict=True):
             axes.plot(y[where], v[where], marker=marker, **_SWITCH)
             _name_point(axes, name, y[where], v[where])
-        axes.set_title(f"{tag})  $\\nu_s$ = {nu:.2f}")
+        axes.set_title(f"{tag})  $\\nu_s$ = {case.attrs['nu_s']:.2f}")
         axes.set_xlabel("$y$ in $y_{st}$")
     row[0].set_ylabel(f"{V} in $y_{{st}}$")
     row[0].margins(0.06, 0.1)
@@ -128,7 +129,7 @@ def _draw_courses(grid: np.ndarray, cases: list[xr.Dataset], periods: int) -> No
     names = ("$y$ in $y_{st}$", f"{V} in $y_{{st}}$", "$C$, $10^5$ N/mm")
     for axes, name in zip(grid[:, 0], names, strict=True):
         axes.set_ylabel(name)
-    grid[2, 1].set_xlabel(f"time $t/T$ in mesh periods: the last {periods}")
+    grid[2, len(cases) // 2].set_xlabel(f"time $t/T$ in mesh periods: the last {periods}")
 
 
 def _mark_switches(column: np.ndarray, course: xr.Dataset) -> None:

@@ -9,7 +9,7 @@ from matplotlib.lines import Line2D
 from mpl_toolkits.mplot3d.axes3d import Axes3D
 
 from gearmesh.figures import palette
-from gearmesh.figures.canvas import WIDTH, V, styled
+from gearmesh.figures.canvas import WIDTH, V, empty, styled
 from gearmesh.figures.orbit import closed, last_periods, switches
 
 SPACING = 0.02
@@ -33,6 +33,8 @@ def draw(cases: Mapping[float, xr.Dataset]) -> Figure:
     Figure
         Orbits with a loop in blue, others in grey, and the courses of the points A and B.
     """
+    if not cases:
+        return empty()
     figure = Figure(figsize=(WIDTH, 4.8))
     axes = figure.add_axes((-0.1, -0.16, 1.12, 1.34), projection="3d")
     places = {"A": [], "B": []}

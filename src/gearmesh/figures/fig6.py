@@ -10,7 +10,7 @@ from matplotlib.lines import Line2D
 from matplotlib.ticker import MultipleLocator
 
 from gearmesh.figures import palette
-from gearmesh.figures.canvas import WIDTH, V, styled
+from gearmesh.figures.canvas import WIDTH, V, empty, styled
 from gearmesh.figures.fig5 import dress
 from gearmesh.figures.orbit import closed, last_periods, scale, switches
 
@@ -40,10 +40,12 @@ def draw(printed: Mapping[float, xr.Dataset], strong: Mapping[float, xr.Dataset]
     Figure
         a) in perspective, b) along the axis of the tuning with the orbits at `CROSSING` strong.
     """
+    portraits = [_within(cases) for cases in (printed, strong)]
+    if not all(portraits):
+        return empty()
     figure = Figure(figsize=(WIDTH, 4.3))
     space = figure.add_axes((-0.035, -0.03, 0.58, 1.04), projection="3d")
     plane = figure.add_axes((0.63, 0.12, 0.36, 0.72))
-    portraits = [_within(cases) for cases in (printed, strong)]
     for cases, (colour, _, point) in zip(portraits, LOOKS, strict=True):
         for nu, case in sorted(cases.items(), reverse=True):
             course = last_periods(case, 1)

@@ -7,9 +7,12 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import MultipleLocator
 
 from gearmesh.figures import palette
-from gearmesh.figures.canvas import WIDTH, A, V, styled
+from gearmesh.figures.canvas import WIDTH, A, V, empty, styled
 from gearmesh.figures.fig6 import LOOKS, STRONGER, damping_handles
 from gearmesh.figures.orbit import closed, last_periods, switches
+
+TUNING = 0.61
+"""The paper does not print it; its text speaks of 0.61."""
 
 PERIODS = 2
 ROWS = (
@@ -24,20 +27,22 @@ ROWS = (
 
 
 @styled
-def draw(printed: xr.Dataset, strong: xr.Dataset) -> Figure:
+def draw(printed: xr.Dataset | None, strong: xr.Dataset | None) -> Figure:
     """Draw phase planes and time courses at one tuning.
 
     Parameters
     ----------
-    printed, strong : xarray.Dataset
+    printed, strong : xarray.Dataset or None
         Cases of c-material with their time courses, with the printed damping and with five
-        times as much.
+        times as much; None where the study lacks one.
 
     Returns
     -------
     Figure
         Left: the phase plane for each damping; right: y, y', y'', C, F_dyn and F_T over 2T.
     """
+    if printed is None or strong is None:
+        return empty()
     figure = Figure(figsize=(WIDTH, 6.8), layout="constrained")
     grid = figure.add_gridspec(1, 2, width_ratios=(1.0, 1.5))
     planes = grid[0].subgridspec(2, 1).subplots(sharex=True, sharey=True)

@@ -1,8 +1,9 @@
 """Colours and markers, once: the regions of the mesh and the courses of Tab. 1.
 
 The courses take a blue and a vermilion that stay apart for colour-blind readers, grey and
-black, and the paper's symbols, which stay apart in print without colour. The region colours are the paper's
-white, yellow and red, pale enough to lie behind a course and unequal in lightness.
+black, and the paper's symbols, which stay apart in print without colour. The region colours
+are the paper's white, yellow and red, pale enough to lie behind a course and unequal in
+lightness.
 """
 
 from dataclasses import dataclass
