@@ -12,6 +12,7 @@ the summary.
 import contextlib
 import fcntl
 import json
+import os
 import sys
 import time
 from collections import Counter
@@ -54,6 +55,19 @@ def job(stage: str) -> Iterator[None]:
     except InputError as error:
         tell(f"error: {error}")
         sys.exit(BAD_INPUT)
+
+
+def write_text(path: Path, text: str) -> None:
+    """Write a text file, whole or not at all."""
+    temporary = path.with_name(f".{path.name}.{os.getpid()}")
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        temporary.write_text(text, encoding="utf-8")
+        temporary.replace(path)
+    except OSError as error:
+        raise InputError(f"{path}: cannot be written: {error.strerror}") from None
+    finally:
+        temporary.unlink(missing_ok=True)
 
 
 def begin_run(cases: int) -> None:

@@ -7,6 +7,8 @@ from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
 
+import yaml
+
 from gearmesh import batches, casefile, paths, provenance
 from gearmesh.batches import Batch
 from gearmesh.configuration import Case, Study, load_study
@@ -52,6 +54,11 @@ class Plan:
         """What the datasets depend on besides the batches: their title and their axes."""
         plan = [(variant.name, nus) for variant, nus in self.study.study.frequencies()]
         return _digest((self.study.title, plan))
+
+    @cached_property
+    def stated(self) -> str:
+        """All that the configuration states, reasons and title too: what the report depends on."""
+        return _digest(self.study.model_dump_json())
 
     def case_file(self, case: Case) -> str:
         """Return the file of a case."""
@@ -126,6 +133,40 @@ def sources(*files: str) -> list[str]:
     """Return files together with the modules that they import, relative to the project's root."""
     found = [*map(Path, files), *provenance.sources(*files)]
     return [_relative(file) for file in found]
+
+
+def notebook_sources(figure: str, runner: str) -> list[str]:
+    """Return what the notebook of a figure is run by, without the checks of other figures."""
+    others = {name for name in ("printed", *paths.NOTEBOOK_NAMES) if name != figure}
+    foreign = {f"claims/{name}.py" for name in others}
+    found = sources(str(paths.notebook(figure)), runner)[1:]
+    return [file for file in found if "/".join(Path(file).parts[-2:]) not in foreign]
+
+
+def claims_digest(figure: str) -> str:
+    """Return the digest of the claims that belong to a figure.
+
+    The ledger is not checked here: that loads compiled code, which takes longer than all else
+    that a run without work has to do. The jobs check it.
+    """
+    text = paths.CLAIMS.read_text(encoding="utf-8")
+    try:
+        claims = [claim for claim in yaml.safe_load(text) if claim["figure"] == figure]
+    except (yaml.YAMLError, TypeError, KeyError):
+        claims = text
+    return _digest(claims)
+
+
+def templates() -> list[str]:
+    """Return the templates of the report."""
+    return sorted(
+        _relative(file) for file in provenance.module("templates").with_suffix("").iterdir()
+    )
+
+
+def captions() -> list[str]:
+    """Return the captions of the figures."""
+    return [f"workflow/report/{name}.rst" for name in paths.FIGURE_NAMES]
 
 
 def _relative(file: Path) -> str:

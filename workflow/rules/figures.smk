@@ -1,1 +1,76 @@
+# Execute the notebooks: each draws a figure and checks its claims.
+NOTEBOOK = pipeline.script("run_notebook")
+FIG1 = pipeline.script("draw_fig1")
+THRESHOLDS = pipeline.script("locate_thresholds")
 
+# Variants whose time courses a figure shows.
+SHOWN = {
+    "fig4": ["c-lubricant"],
+    "fig5": ["c-material"],
+    "fig6": ["c-material", "c-material-5x"],
+    "fig7": ["c-material", "c-material-5x"],
+}
+LOOKS = ["src/gearmesh/figures/gearmesh.mplstyle", "src/gearmesh/templates/claims.html.j2"]
+
+
+rule thresholds:
+    input:
+        pipeline.sources(THRESHOLDS),
+    output:
+        str(paths.THRESHOLDS),
+    params:
+        recipe=PLAN.recipe,
+        grid=PLAN.grid,
+    shell:
+        "{PYTHON} {THRESHOLDS} {STUDY}"
+
+
+rule fig1:
+    input:
+        pipeline.sources(FIG1),
+        LOOKS,
+    output:
+        report(
+            paths.FIGURES / "fig1.png", caption="../report/fig1.rst", category="Figures"
+        ),
+        paths.FIGURES / "fig1.svg",
+    params:
+        place=str(paths.FIGURES / "fig1"),
+    shell:
+        "{PYTHON} {FIG1} {params.place}"
+
+
+for figure in paths.NOTEBOOK_NAMES:
+
+    rule:
+        name:
+            figure
+        input:
+            LOOKS,
+            sources=pipeline.notebook_sources(figure, NOTEBOOK),
+            notebook=paths.notebook(figure),
+            resonance=paths.RESONANCE,
+            bifurcation=paths.BIFURCATION,
+            thresholds=paths.THRESHOLDS,
+            courses=PLAN.time_courses(SHOWN.get(figure, [])),
+        output:
+            report(
+                paths.FIGURES / f"{figure}.png",
+                caption=f"../report/{figure}.rst",
+                category="Figures",
+            ),
+            paths.FIGURES / f"{figure}.svg",
+            checks=paths.check_file(figure),
+        log:
+            paths.executed_notebook(figure),
+        params:
+            recipe=PLAN.recipe,
+            claims=pipeline.claims_digest(figure),
+            place=str(paths.FIGURES / figure),
+            cases=str(paths.CASES),
+            ledger=str(paths.CLAIMS),
+        shell:
+            "{PYTHON} {NOTEBOOK} {input.notebook} {log} configuration={STUDY}"
+            " resonance={input.resonance} bifurcation={input.bifurcation}"
+            " thresholds={input.thresholds} cases={params.cases} ledger={params.ledger}"
+            " figure={params.place} checks={output.checks}"

@@ -1,1 +1,19 @@
+# The report page, and the captions of `snakemake --report`.
+REPORT = pipeline.script("build_report")
 
+
+rule report:
+    input:
+        sources=pipeline.sources(REPORT),
+        templates=pipeline.templates(),
+        captions=pipeline.captions(),
+        ledger=paths.LEDGER,
+        thresholds=paths.THRESHOLDS,
+        figures=[file for name in paths.FIGURE_NAMES for file in paths.figure_files(name)],
+        notebooks=[paths.executed_notebook(name) for name in paths.NOTEBOOK_NAMES],
+    output:
+        report(paths.REPORT, category="Report"),
+    params:
+        study=PLAN.stated,
+    shell:
+        "{PYTHON} {REPORT} {STUDY}"

@@ -1,0 +1,23 @@
+"""Check the numbers that the paper prints and that follow from one another."""
+
+import argparse
+from pathlib import Path
+
+from gearmesh import paths
+from gearmesh.claims import Evidence, check_figure, load_ledger
+from gearmesh.configuration import load_study
+from gearmesh.job import job
+
+
+def main() -> None:
+    """Run as a job."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("config", type=Path)
+    options = parser.parse_args()
+    with job("ledger"):
+        evidence = Evidence(parameters=load_study(options.config).parameters)
+        check_figure("printed", evidence, load_ledger(paths.CLAIMS), paths.check_file("printed"))
+
+
+if __name__ == "__main__":
+    main()

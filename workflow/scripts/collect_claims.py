@@ -1,0 +1,21 @@
+"""Put the checks of all figures together into the ledger."""
+
+import argparse
+from pathlib import Path
+
+from gearmesh import paths
+from gearmesh.claims import collect, load_ledger
+from gearmesh.job import job
+
+
+def main() -> None:
+    """Run as a job."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("checks", type=Path, nargs="+")
+    options = parser.parse_args()
+    with job("ledger"):
+        collect(load_ledger(paths.CLAIMS), options.checks, paths.LEDGER)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,26 @@
+"""Locate the thresholds that the paper states as numbers, by refinement in nu_s."""
+
+import argparse
+import json
+from pathlib import Path
+
+from gearmesh import paths
+from gearmesh.configuration import load_study
+from gearmesh.job import job, write_text
+from gearmesh.thresholds import locate
+
+
+def main() -> None:
+    """Run as a job."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("config", type=Path)
+    options = parser.parse_args()
+    with job("thresholds"):
+        study = load_study(options.config)
+        variants = [variant.name for variant, _ in study.study.frequencies()]
+        found = locate(study.parameters, variants)
+        write_text(paths.THRESHOLDS, json.dumps(found, indent=1, sort_keys=True) + "\n")
+
+
+if __name__ == "__main__":
+    main()
