@@ -12,13 +12,16 @@ from test_integrator import problem
 
 from gearmesh.integrator import simulate
 
+SHALLOW = ("c-lubricant", 0.639)
+"""Dips below y = 0 by 0.0024, once."""
+
 CASES = [
     ("a-conservative", 1.1, {}),
     ("b-material", 0.7, {}),
     ("b-lubricant", 0.85, {"backlash": 0.5}),  # back flanks touch
     ("b-both", 0.9, {}),
     ("c-material", 0.61, {}),
-    ("c-lubricant", 0.639, {}),  # dips below y = 0 by 0.0024, once
+    (*SHALLOW, {}),
     ("c-lubricant", 0.85, {}),
     ("c-both", 1.0, {"friction_coefficient": 0.0}),
     ("d-material", 0.65, {"friction_coefficient": 0.1}),
@@ -35,7 +38,9 @@ CASES = [
 @pytest.mark.parametrize(("name", "nu", "changes"), CASES, ids=lambda case: str(case))
 def test_agrees_with_dop853_on_six_coordinates(name, nu, changes):
     case = problem(nu, name, **changes)
-    course = integrate(case, rtol=1e-12)
+    # SciPy looks for events at the ends of its steps: short ones, to see a dip as short as this.
+    steps = 160 if (name, nu) == SHALLOW else 40
+    course = integrate(case, rtol=1e-12, steps_per_period=steps)
     response = simulate([case], tolerance=1e-12)[0]
     found = np.stack([response.strobe_y, response.strobe_v], axis=1)
     np.testing.assert_allclose(found, course.strobes, atol=1e-8, rtol=0)
@@ -51,6 +56,6 @@ def test_the_cases_reach_what_they_are_for():
     }
     assert reached["b-lubricant", 0.85].inverse_mesh_fraction > 0
     assert reached["c-lubricant", 0.85].contact_loss_fraction > 0
-    shallow = reached["c-lubricant", 0.639]
+    shallow = reached[SHALLOW]
     assert shallow.n_contact_losses > 0
     assert -0.005 < shallow.y_min < 0
