@@ -249,12 +249,11 @@ def mode_of(problem: Problem, time: float, q, v) -> Mode:
     return Mode(regime, stretch, 1 if bracket >= 0.0 else -1, 1 if v[Z_3] >= v[Z_2] else -1)
 
 
-def friction_actions(problem: Problem, time: float, q, v, mode: Mode) -> tuple[float, float, float]:
+def friction_actions(
+    problem: Problem, time: float, q, v, mode: Mode, elastic: float
+) -> tuple[float, float, float]:
     """Return F_T on wheel 3 and the additional moments on both wheels over R_b, in F_st."""
     phase = mesh_phase(problem, time)
-    y, _ = relative_motion(problem, time, q, v)
-    c = mesh_stiffness(problem, phase, mode.stretch)
-    elastic = elastic_force(problem, y, c, mode.regime)
     # Whole periods apart, `phase` and `stretch` are the same place on the mesh line.
     passed = phase - mode.stretch - round(phase - mode.stretch)
     force = moment_3 = moment_2 = 0.0
@@ -299,11 +298,13 @@ def accelerations(problem: Problem, time: float, q, v, mode: Mode | None = None)
         mode = mode_of(problem, time, q, v)
     y, rate = relative_motion(problem, time, q, v)
     c = mesh_stiffness(problem, mesh_phase(problem, time), mode.stretch)
+    elastic = elastic_force(problem, y, c, mode.regime)
     law = problem.lubricant if mode.regime == CONTACT_LOSS else problem.material
-    normal = elastic_force(problem, y, c, mode.regime) + damping_force(rate, law)
-    friction, moment_3, moment_2 = friction_actions(problem, time, q, v, mode)
+    normal = elastic + damping_force(rate, law)
+    friction, moment_3, moment_2 = friction_actions(problem, time, q, v, mode, elastic)
     lever_3, lever_2 = levers(problem, time, q)
-    bearing = -problem.bearing_stiffness * np.asarray(q) - bearing_damping(problem) * np.asarray(v)
+    damping = bearing_damping(problem)
+    bearing = [-problem.bearing_stiffness * q[i] - damping * v[i] for i in range(6)]
     return np.array(
         [
             (1.0 - lever_3 * normal + moment_3) / WHEEL_INERTIA,

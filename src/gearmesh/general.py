@@ -1,0 +1,197 @@
+"""Integration of one run in the six coordinates: the solver for every problem.
+
+Taylor series of high order in steps that end exactly at every jump of the laws
+(`gearmesh.general_series`, `gearmesh.general_kernel`). It serves the problems that the reduced
+system leaves out (run-out, profile deviation, truncated Fourier stiffness), and checks the others.
+"""
+
+import itertools
+import math
+
+import numpy as np
+
+from gearmesh import stiffness
+from gearmesh.friction import follows_run_out, pairs_in_contact
+from gearmesh.general_kernel import EXTREMUM, SAMPLE, SUMMARY, run
+from gearmesh.general_roots import MAX_DEGREE
+from gearmesh.general_series import CASE, STRETCH
+from gearmesh.motion import Problem, bearing_damping, dynamic_force, static_equilibrium
+from gearmesh.response import CONTACT_LOSS, Response, Samples
+
+LOOSENING = 100.0
+"""How much looser the companion run is whose difference estimates the errors."""
+
+SENSITIVE = 1e5
+"""An estimated error above this multiple of the tolerance marks a sensitive orbit."""
+
+_STATUS = ("ok", "step_limit", "extremum_overflow", "not_finite")
+_EXTREMA_PER_PERIOD = 64
+_STEPS_PER_PERIOD = 2000
+
+
+def integrate(
+    problem: Problem,
+    tolerance: float = 1e-10,
+    samples_per_period: int = 0,
+    order: int | None = None,
+) -> Response:
+    """Integrate `problem` and measure its response.
+
+    Parameters
+    ----------
+    problem : Problem
+    tolerance : float
+        Bound of the last terms of the series in a step, in y_st and y_st Omega_s.
+    samples_per_period : int
+        Samples of the time course in each kept mesh period; 0 for none.
+    order : int, optional
+        Degree of the Taylor polynomials, 4 to 28; by default what suits the tolerance.
+
+    Returns
+    -------
+    Response
+        A run that fails has a status other than ``"ok"``.
+    """
+    summary, strobes, extrema, samples = _run(problem, tolerance, samples_per_period, order)
+    if summary["status"]:
+        return Response(_STATUS[summary["status"]], problem.period)
+    companion, *_ = _run(problem, tolerance * LOOSENING, 0, order)
+    errors = [abs(float(summary[name] - companion[name])) for name in ("y_max", "y_min")]
+    if companion["status"]:
+        errors = [math.inf, math.inf]
+    periods = problem.kept_revolutions * problem.teeth
+    duration = periods * problem.period
+    return Response(
+        status="ok",
+        period=problem.period,
+        extremum_time=extrema["time"].copy(),
+        extremum_y=extrema["y"].copy(),
+        extremum_kind=extrema["kind"].copy(),
+        strobe_y=strobes[:, 0].copy(),
+        strobe_v=strobes[:, 1].copy(),
+        y_max=float(summary["y_max"]),
+        y_min=float(summary["y_min"]),
+        y_rms=math.sqrt(summary["square_integral"] / duration),
+        contact_loss_fraction=float(summary["loss_time"]) / duration,
+        inverse_mesh_fraction=float(summary["inverse_time"]) / duration,
+        n_contact_losses=int(summary["contact_losses"]),
+        turning_points_per_period=len(extrema) / periods,
+        y_max_error=errors[0],
+        y_min_error=errors[1],
+        sensitive=max(errors) > SENSITIVE * tolerance,
+        samples=_samples(samples) if samples_per_period else None,
+    )
+
+
+def _run(problem: Problem, tolerance: float, samples_per_period: int, order: int | None):
+    """Return the summary, strobes, extrema and samples of one run."""
+    periods = problem.revolutions * problem.teeth
+    kept = problem.kept_revolutions * problem.teeth
+    strobes = np.zeros((periods + 1, 2))
+    extrema = np.zeros(_EXTREMA_PER_PERIOD * kept, EXTREMUM)
+    samples = np.zeros(samples_per_period * kept, SAMPLE)
+    summaries = np.zeros(1, SUMMARY)
+    summaries["y_max"], summaries["y_min"] = -np.inf, np.inf
+    run(
+        _case(problem, tolerance, order or suitable_order(tolerance)),
+        _stretches(problem),
+        _waves(problem),
+        np.array(problem.deviation, float).reshape(-1, 2),
+        np.concatenate(static_equilibrium(problem)),
+        strobes,
+        extrema,
+        samples,
+        samples_per_period,
+        summaries,
+    )
+    summary = summaries[0]
+    return summary, strobes, extrema[: summary["extrema"]], samples
+
+
+def suitable_order(tolerance: float) -> int:
+    """Return the degree of the series at which a unit of time costs least at `tolerance`.
+
+    Jorba and Zou's optimum, -ln(tolerance) / 2 + 1, and two more for the events that cut steps.
+    """
+    return min(MAX_DEGREE, max(8, math.ceil(3.0 - 0.5 * math.log(tolerance))))
+
+
+def _case(problem: Problem, tolerance: float, order: int) -> np.ndarray:
+    case = np.zeros(1, CASE)
+    # Numbers that have the same name and meaning in both.
+    for name in (
+        *("nu", "period", "initial_phase", "rotation_speed", "teeth", "material", "lubricant"),
+        *("backlash", "body_mass", "bearing_stiffness", "base_radius"),
+        *("eccentricity_3", "eccentricity_2", "eccentricity_angle"),
+    ):
+        case[name] = getattr(problem, name)
+    case["stiffness_mean"] = stiffness.mean(
+        problem.contact_ratio, problem.stiffness_max, problem.stiffness_min
+    )
+    case["bearing_damping"] = bearing_damping(problem)
+    case["friction"] = problem.friction_coefficient
+    case["middle_arm"] = math.tan(problem.pressure_angle)
+    case["base_pitch"] = 2.0 * math.pi / problem.teeth
+    case["has_run_out"] = problem.eccentricity_3 != 0.0 or problem.eccentricity_2 != 0.0
+    case["follows_run_out"] = problem.friction_coefficient != 0.0 and follows_run_out(
+        problem.eccentricity_3, problem.eccentricity_2
+    )
+    case["periods"] = problem.revolutions * problem.teeth
+    case["first_kept"] = case["periods"] - problem.kept_revolutions * problem.teeth
+    case["tolerance"] = tolerance
+    case["order"] = order
+    per_period = _STEPS_PER_PERIOD + 20 * (problem.stiffness_harmonics + len(problem.deviation))
+    case["most_steps"] = per_period * case["periods"]
+    return case
+
+
+def _stretches(problem: Problem) -> np.ndarray:
+    """Return the parts of a mesh period, from its boundary at the initial phase."""
+    places: set[float] = set()
+    if not problem.stiffness_harmonics or problem.friction_coefficient:
+        places.update(stiffness.switch_phases(problem.contact_ratio))
+    if problem.friction_coefficient:
+        places.add(0.5)
+    start = problem.initial_phase
+    edges = [0.0, *sorted((place - start) % 1.0 for place in places), 1.0]
+    parts = []
+    for low, high in itertools.pairwise(edges):
+        if low == high:
+            continue
+        middle = 0.5 * (low + high) + start
+        pairs = pairs_in_contact(middle, problem.contact_ratio)
+        level = stiffness.rectangular(
+            middle, problem.contact_ratio, problem.stiffness_max, problem.stiffness_min
+        )
+        gamma = sum(gamma for gamma, _ in pairs)
+        sigma = pairs[0][1] - 0.5 * (low + high)
+        parts.append((high * problem.period, level, gamma, sigma))
+    return np.array(parts, STRETCH)
+
+
+def _waves(problem: Problem) -> np.ndarray:
+    """Return the amplitudes (cosine, sine) of the truncated series of C(t), shape (n, 2)."""
+    waves = np.zeros((problem.stiffness_harmonics, 2))
+    waves[:, 0] = stiffness.fourier_amplitudes(
+        problem.contact_ratio,
+        problem.stiffness_max,
+        problem.stiffness_min,
+        problem.stiffness_harmonics,
+    )
+    return waves
+
+
+def _samples(rows: np.ndarray) -> Samples:
+    columns = {name: rows[name].copy() for name in rows.dtype.names}
+    regime = columns["regime"].astype(np.int8)
+    return Samples(
+        time=columns["time"],
+        y=columns["y"],
+        v=columns["v"],
+        a=columns["a"],
+        stiffness=columns["stiffness"],
+        modified_stiffness=columns["stiffness"] * (regime != CONTACT_LOSS),
+        force_dynamic=dynamic_force(columns["y"], columns["stiffness"]),
+        force_friction=columns["friction"],
+        regime=regime,
+    )

@@ -1,0 +1,183 @@
+"""Where a polynomial first changes its sign in <0; 1>.
+
+The coefficients of a polynomial in the Bernstein basis change sign at least as often as the
+polynomial does, so no sign change means no root and one means one root (Descartes' rule; see
+Lane and Riesenfeld, BIT 21, 1981). Halving the interval where there are more separates every pair
+of roots, however close: nothing hides between sample points.
+"""
+
+import math
+
+import numpy as np
+from numba import njit
+
+MAX_DEGREE = 28
+"""Highest degree of a polynomial."""
+
+NEVER = 2.0
+"""What `first_change` returns when the sign does not change in <0; 1>."""
+
+# Halvings after which two roots closer than rounding can tell apart count as none.
+_DEPTH = 44
+
+TABLE_SHAPE = (_DEPTH + 3, MAX_DEGREE + 1)
+"""Shape of the workspace of `first_change`."""
+
+_MOST_ITERATIONS = 100
+
+
+def _bernstein_weights() -> np.ndarray:
+    """Return w with w[m, j, i] = binom(j, i) / binom(m, i), shape (m + 1,) * 3 for the largest m.
+
+    The j-th Bernstein coefficient of sum c_i s^i of degree m is sum w[m, j, i] c_i, i <= j.
+    """
+    size = MAX_DEGREE + 1
+    weights = np.zeros((size, size, size))
+    for m in range(size):
+        for j in range(m + 1):
+            for i in range(j + 1):
+                weights[m, j, i] = math.comb(j, i) / math.comb(m, i)
+    return weights
+
+
+_WEIGHTS = _bernstein_weights()
+
+
+@njit(cache=True)
+def evaluate(coefficients, degree, s):
+    """Return the polynomial at `s`."""
+    value = coefficients[degree]
+    for k in range(degree - 1, -1, -1):
+        value = value * s + coefficients[k]
+    return value
+
+
+@njit(cache=True)
+def evaluate_with_slope(coefficients, degree, s):
+    """Return the polynomial and its derivative at `s`."""
+    value = coefficients[degree]
+    slope = 0.0
+    for k in range(degree - 1, -1, -1):
+        slope = slope * s + value
+        value = value * s + coefficients[k]
+    return value, slope
+
+
+@njit(cache=True)
+def refine(coefficients, degree, low, high, sign):
+    """Return where the polynomial changes sign between `low`, where it has `sign`, and `high`.
+
+    Newton's method, kept in a bracket that shrinks.
+    """
+    at = 0.5 * (low + high)
+    width = high - low
+    for _ in range(_MOST_ITERATIONS):
+        value, slope = evaluate_with_slope(coefficients, degree, at)
+        if value * sign > 0.0:
+            low = at
+        else:
+            high = at
+        following = at - value / slope if slope != 0.0 else low
+        # Bisect where Newton's method leaves the bracket, or does not shrink it.
+        if not low < following < high or abs(following - at) > 0.5 * width:
+            following = 0.5 * (low + high)
+        width = abs(following - at)
+        if following == at or width <= 1e-16 * at:
+            return following
+        at = following
+    return at
+
+
+@njit(cache=True)
+def _variations(row, degree):
+    """Return the number of sign changes in a row of coefficients, and its first and last sign."""
+    changes = 0
+    first = 0.0
+    last = 0.0
+    for j in range(degree + 1):
+        if row[j] != 0.0:
+            now = 1.0 if row[j] > 0.0 else -1.0
+            if first == 0.0:
+                first = now
+            elif now != last:
+                changes += 1
+            last = now
+    return changes, first, last
+
+
+@njit(cache=True)
+def _halve(parent, left, right, degree):
+    """Split the Bernstein coefficients of an interval into those of its halves (de Casteljau)."""
+    for j in range(degree + 1):
+        right[j] = parent[j]
+    for level in range(degree + 1):
+        left[level] = right[0]
+        for j in range(degree - level):
+            right[j] = 0.5 * (right[j] + right[j + 1])
+
+
+@njit(cache=True)
+def first_change(coefficients, degree, sign, table):
+    """Return the least s in <0; 1> where the polynomial no longer has `sign`, or `NEVER`.
+
+    Parameters
+    ----------
+    coefficients : ndarray, shape (degree + 1 or more,)
+        Of powers of s. A root at 0 is stated by leading coefficients that are exactly 0: there
+        the sign is that of the first coefficient that is not.
+    degree : int
+        At most `MAX_DEGREE`.
+    sign : float
+        +1 or -1, the sign from the start; 0.0 is returned if the polynomial has the other one.
+    table : ndarray, shape `TABLE_SHAPE`
+        Workspace.
+    """
+    start = 0
+    while start <= degree and coefficients[start] == 0.0:
+        start += 1
+    if start > degree:
+        return NEVER
+    if coefficients[start] * sign < 0.0:
+        return 0.0
+    rest = 0.0
+    for k in range(start + 1, degree + 1):
+        rest += abs(coefficients[k])
+    if rest < abs(coefficients[start]):
+        return NEVER
+    # Without its roots at 0 the polynomial has a lower degree.
+    m = degree - start
+    for j in range(m + 1):
+        total = 0.0
+        for i in range(j + 1):
+            total += _WEIGHTS[m, j, i] * coefficients[start + i]
+        table[0, j] = total
+    return _search(coefficients[start:], m, sign, table)
+
+
+@njit(cache=True)
+def _search(coefficients, degree, sign, table):
+    """Go through the intervals from left to right; row `depth` of the table is the next one."""
+    depth = 0
+    low = 0.0
+    width = 1.0
+    levels = np.zeros(table.shape[0], np.int64)
+    while depth >= 0:
+        width = 0.5 ** levels[depth]
+        changes, first, last = _variations(table[depth], degree)
+        if first == -sign:
+            return low
+        if changes == 0 or (levels[depth] == _DEPTH and last == sign):
+            low += width
+            depth -= 1
+        elif changes == 1:
+            return refine(coefficients, degree, low, low + width, sign)
+        elif levels[depth] == _DEPTH:
+            return low + width
+        else:
+            _halve(table[depth], table[depth + 2], table[depth + 1], degree)
+            table[depth] = table[depth + 1]
+            table[depth + 1] = table[depth + 2]
+            levels[depth] += 1
+            levels[depth + 1] = levels[depth]
+            depth += 1
+    return NEVER
