@@ -100,8 +100,8 @@ def refine_peak(values: Batch, low: float, high: float, width: float) -> tuple[f
     """
     while True:
         places = _cut(low, high)
-        course = values(places)
-        best = int(np.nanargmax(course))
+        course = np.nan_to_num(values(places), nan=-np.inf)
+        best = int(np.argmax(course))
         if high - low <= width or not np.all(np.diff(places) > 0):
             return float(places[best]), float(course[best])
         low, high = places[max(best - 1, 0)], places[min(best + 1, PARTS)]

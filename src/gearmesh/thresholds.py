@@ -141,8 +141,8 @@ def extremum_spread(kind: int) -> Measure:
 
 
 def scan(low: float, high: float) -> np.ndarray:
-    """Return tunings from `low` to `high` with a spacing of `SCAN` at most."""
-    return np.linspace(low, high, int(np.ceil((high - low) / SCAN - 1e-9)) + 1)
+    """Return tunings from `low` to `high` with a spacing of `SCAN` at most; none if they cross."""
+    return np.linspace(low, high, max(0, int(np.ceil((high - low) / SCAN - 1e-9)) + 1))
 
 
 def jumps(courses: Courses, low: float, high: float) -> list[dict[str, float]]:
@@ -245,7 +245,7 @@ def peak(courses: Courses, low: float, high: float) -> dict[str, float]:
     """Locate the greatest y_max between two tunings."""
     places = scan(low, high)
     y_max = courses.of(highest)
-    best = int(np.nanargmax(y_max(places)))
+    best = int(np.argmax(np.nan_to_num(y_max(places), nan=-np.inf)))
     around = places[max(best - 1, 0)], places[min(best + 1, places.size - 1)]
     nu, height = refine_peak(y_max, *around, WIDTH)
     return {"nu": nu, "y_max": height}
@@ -253,7 +253,7 @@ def peak(courses: Courses, low: float, high: float) -> dict[str, float]:
 
 def largest_rise(courses: Courses, low: float, high: float) -> float:
     """Return by how much y_max grows at the most between neighbours of a scan: 0 if it falls."""
-    return float(max(0.0, np.nanmax(np.diff(courses.of(highest)(scan(low, high))))))
+    return float(np.nanmax(np.diff(courses.of(highest)(scan(low, high))), initial=0.0))
 
 
 def relative_difference(one: Courses, other: Courses, low: float, high: float) -> float:
@@ -324,7 +324,21 @@ def locate(parameters: Parameters, variants: Collection[str]) -> dict[str, dict[
     pair = [known.get(name) for name in ("c-material-5x", "c-material")]
     if None not in pair:
         note("exceedance", "c-material-5x", exceedance(*pair, FIRST, 0.8))
-    return found
+    return _plain(found)
+
+
+def _plain(value: object) -> object:
+    """Write what is not a number, where every run failed, as JSON can hold it."""
+    if isinstance(value, dict):
+        return {key: _plain(item) for key, item in value.items()}
+    if isinstance(value, list):
+        return [_plain(item) for item in value]
+    return None if isinstance(value, float) and not np.isfinite(value) else value
+
+
+def _least(values: np.ndarray) -> float:
+    """Return the least value, infinity where there is none."""
+    return float(np.nanmin(values, initial=np.inf))
 
 
 def _of_lubricant(courses: Courses) -> dict[str, object]:
@@ -340,7 +354,7 @@ def _of_lubricant(courses: Courses) -> dict[str, object]:
         "first_jump": first,
         "second_jump": second,
         "peak": summit,
-        "lowest": float(np.nanmin(courses.of(lowest)(scan(FIRST, LAST)))),
+        "lowest": _least(courses.of(lowest)(scan(FIRST, LAST))),
         "onset_maxima": split,
         "onset_minima": onset(minima, LAST_JUMP, LAST),
         "onset_strobes": onset(courses.of(courses.strobe_spread), LAST_JUMP, LAST),
@@ -367,6 +381,6 @@ def _of_loops(courses: Courses, parameters: Parameters) -> dict[str, object]:
     return {
         "loop_end": end,
         "loop_place": end and loop_place(courses, end, parameters.assumed.initial_phase),
-        "turning_points_before": end and float(np.nanmin(turning(scan(FIRST, end - WIDTH)))),
-        "turning_points_beyond": end and float(np.nanmax(turning(scan(end + WIDTH, LAST)))),
+        "turning_points_before": end and _least(turning(scan(FIRST, end - WIDTH))),
+        "turning_points_beyond": end and -_least(-turning(scan(end + WIDTH, LAST))),
     }

@@ -1,5 +1,6 @@
 """What a check may look at."""
 
+import math
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
@@ -33,13 +34,16 @@ class Evidence:
     time_courses: "Mapping[tuple[str, float], xr.Dataset]" = field(default_factory=dict)
 
     def located(self, observable: str, names: Iterable[str]) -> dict[str, Any]:
-        """Return an observable for each of `names`; raise NotInStudy if one is lacking."""
+        """Return an observable for each of `names`; raise NotInStudy if one is lacking.
+
+        What was looked for and does not exist (None in `thresholds`) is not-a-number.
+        """
         known = self.thresholds.get(observable, {})
         names = list(names)
         lacking = [name for name in names if name not in known]
         if lacking:
             raise NotInStudy(f"{observable} of {', '.join(lacking)}")
-        return {name: known[name] for name in names}
+        return {name: _as_numbers(known[name]) for name in names}
 
     def time_course(self, variant: str, nu: float) -> "xr.Dataset":
         """Return a case with its time course; raise NotInStudy if it is lacking."""
@@ -47,3 +51,11 @@ class Evidence:
             if name == variant and abs(at - nu) < 1e-9 and "y_rel" in case:
                 return case
         raise NotInStudy(f"time course of {variant} at {nu:g}")
+
+
+def _as_numbers(value: Any) -> Any:
+    if isinstance(value, dict):
+        return {key: _as_numbers(item) for key, item in value.items()}
+    if isinstance(value, list):
+        return [_as_numbers(item) for item in value]
+    return math.nan if value is None else value

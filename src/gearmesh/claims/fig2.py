@@ -1,7 +1,5 @@
 """Fig. 2: resonance characteristics of a to d and h."""
 
-from typing import Any
-
 from gearmesh.claims.evidence import Evidence
 from gearmesh.thresholds import NONLINEAR, WIDTH
 
@@ -39,17 +37,16 @@ def agreement_between_jumps(evidence: Evidence) -> tuple[dict[str, float], str]:
     return measured, "median relative spread of y_max in ⟨0.66; 0.8⟩ and ⟨0.8; 1.1⟩"
 
 
-def rounded_peaks(evidence: Evidence) -> tuple[dict[str, dict[str, Any]], str]:
+def rounded_peaks(evidence: Evidence) -> tuple[dict[str, dict[str, float]], str]:
     """F2.5: how far the peaks of d and h lie beyond the jump, and beyond the peak of c."""
     peaks = {name: found["nu"] for name, found in evidence.located("peak", LUBRICANT).items()}
     jumps = evidence.located("second_jump", LUBRICANT)
-    beyond_jump, beyond_c = {}, {}
-    for name in LUBRICANT[1:]:
-        jump = jumps[name]
-        beyond_jump[name] = None if jump is None else peaks[name] - jump
-        beyond_c[name] = peaks[name] - peaks[LUBRICANT[0]]
+    quadratic, *rounded = LUBRICANT
+    measured = {
+        "beyond the jump": {name: peaks[name] - jumps[name] for name in rounded},
+        "beyond the peak of c": {name: peaks[name] - peaks[quadratic] for name in rounded},
+    }
     shown = ", ".join(f"{name[0]} {nu:.3f}" for name, nu in peaks.items())
-    measured = {"beyond the jump": beyond_jump, "beyond the peak of c": beyond_c}
     return measured, f"distances in ν_s; peaks at {shown}"
 
 

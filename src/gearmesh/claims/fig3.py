@@ -1,7 +1,5 @@
 """Fig. 3: bifurcation characteristics of c, d and h."""
 
-from typing import Any
-
 from gearmesh.claims.evidence import Evidence
 from gearmesh.claims.fig2 import LUBRICANT
 
@@ -15,7 +13,7 @@ def bifurcation_onset(evidence: Evidence) -> tuple[dict[str, dict[str, float]], 
     return onsets, "ν_s from which the extrema of the mesh periods visibly differ"
 
 
-def further_branches(evidence: Evidence) -> tuple[dict[str, Any], str]:
+def further_branches(evidence: Evidence) -> tuple[dict[str, float], str]:
     """F3.2: range of the further extremum branches of c-□."""
     name = "c-material"
     before = evidence.located("turning_points_before", [name])[name]
@@ -37,7 +35,7 @@ def order_below(evidence: Evidence) -> tuple[dict[str, dict[str, float]], str]:
     return {"ratio": ratios, "below": below}, "median spread of the periods' maxima, in y_st"
 
 
-def loss_at_jumps(evidence: Evidence) -> tuple[dict[str, dict[str, Any]], str]:
+def loss_at_jumps(evidence: Evidence) -> tuple[dict[str, dict[str, float]], str]:
     """F3.5: contact loss that comes with the jumps."""
     gained = evidence.located("loss_gained", LUBRICANT)
     measured = {

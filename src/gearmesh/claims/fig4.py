@@ -62,14 +62,11 @@ def phase_plane_corners(evidence: Evidence) -> tuple[dict[str, dict[str, float]]
     return by_quantity(found), "jumps of y'' in normal mesh, as multiples of the jump of C y"
 
 
-def bifurcation_is_heterodyne(evidence: Evidence) -> tuple[dict[str, float | None], str]:
+def bifurcation_is_heterodyne(evidence: Evidence) -> tuple[dict[str, float], str]:
     """F4.3: the split of the maxima begins where the motion ceases to be steady."""
     strobes = evidence.located("onset_strobes", LUBRICANT)
     maxima = evidence.located("onset_maxima", LUBRICANT)
-    apart = {
-        name: None if None in (strobes[name], maxima[name]) else abs(strobes[name] - maxima[name])
-        for name in LUBRICANT
-    }
+    apart = {name: abs(strobes[name] - maxima[name]) for name in LUBRICANT}
     return apart, "distance in ν_s between the onsets of spread of the strobes and of the maxima"
 
 

@@ -1,12 +1,10 @@
 """Fig. 5: phase portrait of c-□ over nu_s."""
 
-from typing import Any
-
 from gearmesh.claims.evidence import Evidence
 from gearmesh.stiffness import switch_phases
 
 
-def loops_vanish(evidence: Evidence) -> tuple[dict[str, Any], str]:
+def loops_vanish(evidence: Evidence) -> tuple[dict[str, float], str]:
     """F5.1: turning points in a period below and above the end of the loops."""
     name = "c-material"
     measured = {
@@ -14,26 +12,20 @@ def loops_vanish(evidence: Evidence) -> tuple[dict[str, Any], str]:
         for side in ("before", "beyond")
     }
     end = evidence.located("loop_end", [name])[name]
-    return measured, f"turning points a period up to and beyond ν_s = {_shown(end)}"
+    return measured, f"turning points a period up to and beyond ν_s = {end:.4f}"
 
 
-def distance_to_switch(evidence: Evidence, name: str) -> float | None:
+def distance_to_switch(evidence: Evidence, name: str) -> float:
     """Return how far from a switch of C(t) the last loop closes, in mesh periods."""
     place = evidence.located("loop_place", [name])[name]
-    if place is None:
-        return None
     phases = switch_phases(evidence.parameters.printed.contact_ratio)
     return min(abs((place - phase + 0.5) % 1.0 - 0.5) for phase in phases)
 
 
-def loops_melt(evidence: Evidence) -> tuple[float | None, str]:
+def loops_melt(evidence: Evidence) -> tuple[float, str]:
     """F5.2: the last loop closes at a switch."""
     measured = distance_to_switch(evidence, "c-material")
     return measured, "distance of the last loop from a switch of C(t), in mesh periods"
-
-
-def _shown(nu: float | None) -> str:
-    return "none" if nu is None else f"{nu:.4f}"
 
 
 MEASURES = {"F5.1": loops_vanish, "F5.2": loops_melt}

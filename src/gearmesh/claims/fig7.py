@@ -1,6 +1,7 @@
 """Fig. 7: c-□ with both dampings over two mesh periods."""
 
-from typing import TYPE_CHECKING, Any
+import math
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -23,7 +24,7 @@ def mesh_phase(case: "xr.Dataset", evidence: Evidence) -> np.ndarray:
     return (periods + evidence.parameters.assumed.initial_phase) % 1.0
 
 
-def friction_sense(evidence: Evidence) -> tuple[dict[str, dict[str, Any]], str]:
+def friction_sense(evidence: Evidence) -> tuple[dict[str, dict[str, float]], str]:
     """F7.1: where friction acts, and where it changes its sense."""
     found = {}
     for name, case in _courses(evidence).items():
@@ -34,8 +35,8 @@ def friction_sense(evidence: Evidence) -> tuple[dict[str, dict[str, Any]], str]:
         turns = np.flatnonzero(force[1:] * force[:-1] < 0)
         scale = np.abs(force).max()
         found[name] = {
-            "in double contact": float(np.abs(force[inner]).max() / scale) if scale else None,
-            "phase of the change": float(np.median(phase[turns])) if turns.size else None,
+            "in double contact": float(np.abs(force[inner]).max() / scale) if scale else math.nan,
+            "phase of the change": float(np.median(phase[turns])) if turns.size else math.nan,
         }
     return by_quantity(found), "greatest F_T in double contact, relative; phase where F_T turns"
 

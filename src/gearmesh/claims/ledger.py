@@ -6,9 +6,9 @@ from collections import Counter
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, Literal
+from typing import Annotated, Any, Literal
 
-from pydantic import Field, field_validator, model_validator
+from pydantic import AllowInfNan, Field, Strict, field_validator, model_validator
 
 from gearmesh import yamlfile
 from gearmesh.errors import InputError
@@ -36,14 +36,14 @@ class Bound(Section):
         return self
 
 
-Target = bool | float | Bound
+Target = Annotated[float, Strict(), AllowInfNan(False)] | Bound
 
 
 class Claim(Section):
     """One statement of the paper, and what counts as showing it.
 
     `expected` is a number (then `tolerance` says how far off the measured value may be), a
-    `Bound`, or true; or a mapping from the names of several quantities to such targets.
+    `Bound`; or a mapping from the names of several quantities to such targets.
     """
 
     id: str = Field(pattern=r"^[A-Z][0-9]+(\.[0-9]+)?$", description="P1, F2.1, ...")
@@ -76,7 +76,7 @@ class Claim(Section):
                 "reason is for an expected_status other than 'reproduced', and needed there"
             )
         for name, target, tolerance in self.targets():
-            is_number = isinstance(target, float) and not isinstance(target, bool)
+            is_number = not isinstance(target, Bound)
             if is_number != (tolerance is not None):
                 raise ValueError(
                     f"tolerance{name and f' of {name!r}'} is for a number, needed there"
@@ -99,7 +99,7 @@ class Claim(Section):
             tolerance = {
                 name: self.tolerance
                 for name, target in self.expected.items()
-                if isinstance(target, float) and not isinstance(target, bool)
+                if not isinstance(target, Bound)
             }
         return [(name, target, tolerance.get(name)) for name, target in self.expected.items()]
 
@@ -146,8 +146,6 @@ def _rounded(value: Any) -> Any:
 def _satisfies(value: Any, target: Target, tolerance: float | None) -> bool:
     if isinstance(value, Mapping):
         return bool(value) and all(_satisfies(v, target, tolerance) for v in value.values())
-    if isinstance(target, bool):
-        return value is target
     if value is None or not math.isfinite(value):
         return False
     if isinstance(target, Bound):
@@ -164,7 +162,7 @@ def holds(claim: Claim, measured: Any) -> bool:
     Parameters
     ----------
     claim : Claim
-    measured : number, bool or None, or a mapping from variants to these
+    measured : number or None, or a mapping from variants to these
         Where `claim.expected` names several quantities, a mapping from their names to such
         values. Every one must fit; nothing measured (None, not a number, empty) does not.
     """
