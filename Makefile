@@ -1,6 +1,7 @@
 # Every target sets up what it needs; the environment is made again only when its lock changes.
+# CORES=2 limits the cores that the pipeline uses, PYTHON=python3.12 chooses the interpreter.
 PYTHON ?= python3
-CORES ?= $(shell nproc 2>/dev/null || echo 2)
+CORES ?=
 
 BIN := .venv/bin
 STAMP := .venv/.installed
@@ -9,7 +10,7 @@ PIP := $(BIN)/python -m pip install --quiet --disable-pip-version-check
 # Nothing without a hash is ever installed, so the few packages that come as sources are built
 # with the setuptools of the lock instead of one that pip would fetch for the purpose.
 LOCKED := $(PIP) --require-hashes --no-build-isolation
-SNAKEMAKE := $(BIN)/snakemake --profile workflow/profiles/default --cores $(CORES)
+SNAKEMAKE := $(BIN)/snakemake --profile workflow/profiles/default $(if $(CORES),--cores $(CORES))
 UV_COMPILE := uv pip compile --quiet --universal --python-version 3.11 --fork-strategy fewest \
 	--generate-hashes --no-annotate --no-header --no-emit-index-url
 

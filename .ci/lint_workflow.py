@@ -5,7 +5,7 @@ environment of requirements.lock, whose packages are pinned by hash, so that dem
 otherwise.
 """
 
-import json
+import re
 import subprocess
 import sys
 from pathlib import Path
@@ -13,22 +13,31 @@ from pathlib import Path
 ACCEPTED = "Specify a conda environment or container for each rule."
 
 
-def findings() -> list[str]:
-    """Return what is left of Snakemake's findings, one line each."""
+def findings(report: str) -> list[tuple[str, str]]:
+    """Return (rule or file, finding) for everything that a report of Snakemake's lint names."""
+    found, place = [], ""
+    for line in report.splitlines():
+        if match := re.fullmatch(r"Lints for (.+):", line):
+            place = match[1]
+        elif match := re.fullmatch(r" {4}\* (.+):", line):
+            found.append((place, match[1]))
+    return found
+
+
+def main() -> int:
+    """Lint the workflow; returns the exit status."""
     snakemake = Path(sys.executable).with_name("snakemake")
-    run = subprocess.run([snakemake, "--lint", "json"], capture_output=True, text=True)
-    start = run.stdout.find("{")
-    if start < 0:
-        return [] if run.returncode == 0 else [run.stderr.strip()]
-    report = json.loads(run.stdout[start:])
-    left = []
-    for item in [*report["snakefiles"], *report["rules"]]:
-        name = item["for"].get("rule") or item["for"]["snakefile"]
-        left += [f"{name}: {lint['title']}" for lint in item["lints"] if lint["title"] != ACCEPTED]
-    return left
+    run = subprocess.run([snakemake, "--lint"], capture_output=True, text=True)
+    found = findings(run.stderr)
+    if run.returncode and not found:  # it did not come as far as linting
+        print(run.stderr, file=sys.stderr)
+        return 1
+    left = [(place, finding) for place, finding in found if finding != ACCEPTED]
+    print(f"snakemake --lint: {len(left)} findings, {len(found) - len(left)} accepted")
+    for place, finding in left:
+        print(f"  {place}: {finding}")
+    return int(bool(left))
 
 
 if __name__ == "__main__":
-    left = findings()
-    print("\n".join(left) or "snakemake --lint: nothing left to say")
-    sys.exit(bool(left))
+    sys.exit(main())
