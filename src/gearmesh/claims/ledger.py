@@ -6,9 +6,10 @@ from collections import Counter
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Annotated, Any, Literal
+from typing import Any, Literal
 
-from pydantic import AllowInfNan, Field, Strict, field_validator, model_validator
+from pydantic import Field, field_validator, model_validator
+from pydantic_core import PydanticCustomError
 
 from gearmesh import yamlfile
 from gearmesh.errors import InputError
@@ -30,13 +31,21 @@ class Bound(Section):
     @model_validator(mode="after")
     def _bounds_something(self) -> "Bound":
         if self.at_least is None and self.at_most is None:
-            raise ValueError("needs at_least, at_most or both")
+            raise ValueError("at_least: missing; needed is it, at_most or both")
         if None not in (self.at_least, self.at_most) and self.at_least > self.at_most:
-            raise ValueError(f"at_least {self.at_least:g} is above at_most {self.at_most:g}")
+            raise ValueError(f"at_least: {self.at_least:g} is above at_most, {self.at_most:g}")
         return self
 
 
-Target = Annotated[float, Strict(), AllowInfNan(False)] | Bound
+Target = float | Bound
+
+
+def _target(value: object) -> Target:
+    if isinstance(value, dict):
+        return Bound.model_validate(value)
+    if isinstance(value, bool) or not isinstance(value, int | float) or not math.isfinite(value):
+        raise PydanticCustomError("target", "allowed is a number, or at_least and at_most")
+    return float(value)
 
 
 class Claim(Section):
@@ -59,34 +68,25 @@ class Claim(Section):
 
     @field_validator("expected", mode="before")
     @classmethod
-    def _recognise_bounds(cls, value: Any) -> Any:
-        if not isinstance(value, dict):
-            return value
-        if value.keys() & Bound.model_fields.keys():
-            return Bound.model_validate(value)
-        return {
-            name: Bound.model_validate(target) if isinstance(target, dict) else target
-            for name, target in value.items()
-        }
+    def _read_targets(cls, value: object) -> object:
+        if isinstance(value, dict) and not value.keys() & Bound.model_fields.keys():
+            return {name: _target(target) for name, target in value.items()}
+        return _target(value)
 
     @model_validator(mode="after")
     def _is_complete(self) -> "Claim":
         if (self.expected_status == REPRODUCED) != (self.reason is None):
-            raise ValueError(
-                "reason is for an expected_status other than 'reproduced', and needed there"
-            )
+            raise ValueError("reason: needed for an expected_status that is not 'reproduced' only")
+        if isinstance(self.tolerance, dict):
+            named = self.expected if isinstance(self.expected, dict) else {}
+            for name in self.tolerance.keys() - named.keys():
+                raise ValueError(f"tolerance: expected names no quantity {name!r}")
         for name, target, tolerance in self.targets():
-            is_number = not isinstance(target, Bound)
-            if is_number != (tolerance is not None):
-                raise ValueError(
-                    f"tolerance{name and f' of {name!r}'} is for a number, needed there"
-                )
+            of = f" of {name!r}" if name else ""
+            if isinstance(target, Bound) != (tolerance is None):
+                raise ValueError(f"tolerance: needed for an expected number only{of}")
             if tolerance is not None and not 0 <= tolerance < math.inf:
-                raise ValueError(f"tolerance {tolerance} is not a number >= 0")
-        if isinstance(self.tolerance, dict) and not isinstance(self.expected, dict):
-            raise ValueError("tolerance names quantities, expected does not")
-        if isinstance(self.tolerance, dict) and self.tolerance.keys() - self.expected.keys():
-            raise ValueError("tolerance names quantities that expected does not")
+                raise ValueError(f"tolerance: found {tolerance:g}{of}; allowed is a number >= 0")
         return self
 
     def targets(self) -> list[tuple[str, Target, float | None]]:

@@ -1,6 +1,7 @@
 """Numbers that the paper prints or that follow from them, checked by computing them again."""
 
 import math
+from collections.abc import Callable
 from functools import reduce
 
 import numpy as np
@@ -89,6 +90,13 @@ def _trace(nu: float, damping_ratio: float, parameters: Parameters) -> float:
     return float(np.trace(reduce(np.matmul, maps)))
 
 
+def _root(function: Callable[[float], float], low: float, high: float) -> float:
+    """Return where a function changes its sign, not-a-number where it does not."""
+    if function(low) * function(high) >= 0:
+        return math.nan
+    return brentq(function, low, high, xtol=1e-8)
+
+
 def parametric_tongue(evidence: Evidence) -> tuple[dict[str, float], str]:
     """P8: where the oscillator that never loses contact is unstable, by Floquet's theory."""
     parameters = evidence.parameters
@@ -97,7 +105,7 @@ def parametric_tongue(evidence: Evidence) -> tuple[dict[str, float], str]:
         return abs(_trace(nu, 0.0, parameters)) - 2.0
 
     middle = max(np.linspace(0.6, 0.72, 1201), key=excess)
-    edges = brentq(excess, 0.6, middle, xtol=1e-8), brentq(excess, middle, 0.72, xtol=1e-8)
+    edges = _root(excess, 0.6, middle), _root(excess, middle, 0.72)
 
     def growth(ratio: float) -> float:
         """Least logarithmic growth over a period; the trace leaves out the factor exp(-ζ T)."""
@@ -105,7 +113,7 @@ def parametric_tongue(evidence: Evidence) -> tuple[dict[str, float], str]:
         traces = np.maximum([abs(_trace(nu, ratio, parameters)) / 2 for nu in nus], 1.0)
         return float(np.max(np.arccosh(traces) - ratio * 2 * np.pi / nus))
 
-    values = {"from": edges[0], "to": edges[1], "damping ratio": brentq(growth, 1e-4, 0.05)}
+    values = {"from": edges[0], "to": edges[1], "damping ratio": _root(growth, 1e-4, 0.05)}
     return values, "third parametric resonance; the damping ratio above which it vanishes"
 
 
