@@ -92,7 +92,7 @@ def _trace(nu: float, damping_ratio: float, parameters: Parameters) -> float:
 
 def _root(function: Callable[[float], float], low: float, high: float) -> float:
     """Return where a function changes its sign, not-a-number where it does not."""
-    if function(low) * function(high) >= 0:
+    if not function(low) * function(high) < 0:
         return math.nan
     return brentq(function, low, high, xtol=1e-8)
 
