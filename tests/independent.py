@@ -159,11 +159,21 @@ class _Run:
                 -mode.run_out_sign,
                 self._flip_run_out_sign,
             )
-            if mode.slip_sign:
+            if mode.slip_sign and not self._rests():
                 watch(lambda t, x: x[6 + Z_3] - x[6 + Z_2], -mode.slip_sign, self._stop_sliding)
-            else:
-                watch(self._margin, -1, self._release)
+            if not mode.slip_sign:
+                watch(lambda t, x: self._margin(t, x), -1, self._release)
         return events
+
+    def _rests(self):
+        """Nothing moves the wheels across the mesh line: unloaded bearings, and no friction."""
+        z, rates = self.state[[Z_3, Z_2]], self.state[[6 + Z_3, 6 + Z_2]]
+        return (
+            z[0] == z[1]
+            and rates[0] == rates[1]
+            and self._available(self.time, self.state) == 0.0
+            and mesh_gamma(self.mode.stretch, self.problem.contact_ratio) == 0.0
+        )
 
     def _turn(self):
         y, _ = self.relative_motion()

@@ -14,7 +14,7 @@ from gearmesh import stiffness
 from gearmesh.friction import follows_run_out, pairs_in_contact
 from gearmesh.general_kernel import EXTREMUM, SAMPLE, SUMMARY, run
 from gearmesh.general_roots import MAX_DEGREE
-from gearmesh.general_series import CASE, STRETCH
+from gearmesh.general_series import CASE, MODE, STRETCH
 from gearmesh.motion import Problem, bearing_damping, dynamic_force, static_equilibrium
 from gearmesh.response import CONTACT_LOSS, Response, Samples
 
@@ -98,6 +98,7 @@ def _run(problem: Problem, tolerance: float, samples_per_period: int, order: int
         _waves(problem),
         np.array(problem.deviation, float).reshape(-1, 2),
         np.concatenate(static_equilibrium(problem)),
+        np.zeros(1, MODE),
         strobes,
         extrema,
         samples,

@@ -36,7 +36,6 @@ from gearmesh.general_series import (
     BRACKET,
     ELASTIC,
     FRICTION,
-    MODE,
     SERIES_SHAPE,
     STIFFNESS,
     V,
@@ -361,7 +360,17 @@ def _start(case, mode, state, waves, deviation, series, strobes, summary):
 
 @njit(cache=True, nogil=True)
 def run(
-    cases, stretches, waves, deviation, state, strobes, extrema, samples, per_period, summaries
+    cases,
+    stretches,
+    waves,
+    deviation,
+    state,
+    modes,
+    strobes,
+    extrema,
+    samples,
+    per_period,
+    summaries,
 ):
     """Integrate one run.
 
@@ -374,7 +383,9 @@ def run(
         Amplitudes (cosine, sine) of the truncated series of C(t), empty for the rectangular wave,
         and of the profile deviation.
     state : ndarray, shape (12,)
-        Coordinates and rates at the start; overwritten.
+        Coordinates and rates at the start; at the end of the run afterwards.
+    modes : ndarray of `MODE`, shape (1,)
+        Workspace, zero. (A record that numba takes from an array does not keep it alive.)
     strobes : ndarray, shape (periods + 1, 2)
     extrema : ndarray of `EXTREMUM`
     samples : ndarray of `SAMPLE`
@@ -385,7 +396,7 @@ def run(
     """
     case = cases[0]
     summary = summaries[0]
-    mode = np.zeros(1, MODE)[0]
+    mode = modes[0]
     series = np.zeros(SERIES_SHAPE)
     scaled = np.zeros(SERIES_SHAPE[1])
     table = np.zeros(TABLE_SHAPE)
