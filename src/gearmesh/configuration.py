@@ -132,7 +132,7 @@ class Plan(Section):
     )
     cases_per_job: int = quantity("1", "", "cases that one job computes, at the most", 1, 100_000)
     case_files: bool = Field(
-        True, description="whether each case has a file of its own, not only those with time courses"
+        True, description="whether cases without a time course have files of their own too"
     )
 
     @field_validator("variants", mode="before")
