@@ -1,0 +1,176 @@
+"""`make bench`: measure all solvers in one go, print the table, write results and diagram."""
+
+import os
+
+# One core for everybody, and before NumPy and numba count the cores.
+os.environ.update(
+    dict.fromkeys(("NUMBA_NUM_THREADS", "OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS"), "1")
+)
+
+import importlib.metadata
+import json
+import platform
+import sys
+from dataclasses import asdict, dataclass
+from pathlib import Path
+
+from benchmarks import table, work_precision
+from benchmarks.cases import SWEEP, singles, sweeps
+from benchmarks.measure import AIM, SHARE, Accuracy, Contest, accuracy, sparse, timed
+from benchmarks.peers import OURS, OURS_WITHOUT_SAMPLES, PEERS, Solve, Solver
+
+ROUNDS = 7
+SLOW_ROUNDS = 3
+RESULTS = Path(__file__).parent / "results.json"
+PACKAGES = ("gearmesh", "heyoka", "numba", "numbalsoda", "numpy", "scipy")
+
+
+@dataclass(frozen=True, slots=True)
+class Entry:
+    """A solver at one setting, with its errors: a row of the table."""
+
+    name: str
+    solver: Solver
+    solve: Solve
+    setting: float
+    accuracy: Accuracy
+
+
+def main() -> int:
+    """Run everything."""
+    if hasattr(os, "sched_setaffinity"):
+        os.sched_setaffinity(0, {max(os.sched_getaffinity(0))})
+    try:
+        from benchmarks.reference import SENSITIVE, references
+    except ImportError as error:
+        print(f"benchmarks: heyoka gives the reference and cannot be imported: {error}")
+        return 2
+
+    runs = sweeps()
+    one_each = [[problem] for problems in singles().values() for problem in problems]
+    _say("reference solutions")
+    of_runs = {name: references(problems) for name, problems in runs.items()}
+    sensitive = {
+        name: [float(nu) for nu, known in zip(SWEEP, found, strict=True) if known.sensitive]
+        for name, found in of_runs.items()
+    }
+
+    solvers, left_out = _load()
+    points, entries = [], []
+    for solver, solve in solvers:
+        cases, known = (sparse(runs), sparse(of_runs)) if solver.slow else (runs, of_runs)
+        found = {}
+        for setting in solver.settings:
+            _say(f"{solver.name}: {solver.setting} {setting:g}")
+            solve(next(iter(cases.values()))[:1], setting)  # compiles
+            outcomes, spent = timed(solve, setting, cases)
+            found[setting] = accuracy(outcomes, known)
+            points.append(work_precision.Point(solver.name, setting, spent, found[setting].most))
+        entries += _entries(solver, solve, found)
+    ours = next(entry for entry in entries if entry.solver is OURS)
+    _, without_samples = _load_one(OURS_WITHOUT_SAMPLES)
+    entries.insert(
+        1,
+        Entry(
+            OURS_WITHOUT_SAMPLES.name,
+            OURS_WITHOUT_SAMPLES,
+            without_samples,
+            ours.setting,
+            accuracy(timed(without_samples, ours.setting, runs)[0], of_runs),
+        ),
+    )
+
+    _say("times")
+    rows = _rows(entries, runs, one_each)
+    results = {
+        "machine": _machine(),
+        "aim": {"error": AIM, "share_of_runs": SHARE},
+        "left_out": left_out,
+        "sensitive": {"amplification_above": SENSITIVE, "nu": sensitive},
+        "table": rows,
+        "work_precision": [asdict(point) for point in points],
+    }
+    RESULTS.write_text(json.dumps(results, indent=1, ensure_ascii=False) + "\n")
+    work_precision.draw(points)
+    print(table.render(results))
+    return 0
+
+
+def _say(text: str) -> None:
+    print(f"\x1b[2K{text}", end="\r" if sys.stderr.isatty() else "\n", file=sys.stderr, flush=True)
+
+
+def _load() -> tuple[list[tuple[Solver, Solve]], dict[str, str]]:
+    """Import what is there; say of the others why they are left out."""
+    loaded, left_out = [], {}
+    for solver in (OURS, *PEERS):
+        try:
+            loaded.append(_load_one(solver))
+        except ImportError as error:
+            left_out[solver.name] = str(error)
+            _say(f"left out: {solver.name} ({error})\n")
+    return loaded, left_out
+
+
+def _load_one(solver: Solver) -> tuple[Solver, Solve]:
+    return solver, solver.load()
+
+
+def _entries(solver: Solver, solve: Solve, found: dict[float, Accuracy]) -> list[Entry]:
+    """Return the settings to list: those asked for, or the coarsest one that reaches the aim."""
+    reaching = [setting for setting, errors in found.items() if errors.reaches_aim]
+    chosen = solver.tabled or (reaching or list(found)[-1:])[:1]
+    return [
+        Entry(
+            solver.name if len(chosen) == 1 else f"{solver.name}, {setting:g} {solver.setting}",
+            solver,
+            solve,
+            setting,
+            found[setting],
+        )
+        for setting in chosen
+    ]
+
+
+def _rows(entries: list[Entry], runs, one_each) -> list[dict]:
+    """Time the entries on the sweeps and on single cases."""
+    thinned = sparse(runs)
+    times = {}
+    for slow, rounds in ((False, ROUNDS), (True, SLOW_ROUNDS)):
+        chosen = [entry for entry in entries if entry.solver.slow is slow]
+        sweep = {
+            e.name: (e.solve, e.setting, list((thinned if slow else runs).values())) for e in chosen
+        }
+        single = {e.name: (e.solve, e.setting, one_each) for e in chosen if e.solver.single}
+        times |= {name: {"sweep": t} for name, t in Contest(sweep).medians(rounds).items()}
+        for name, t in Contest(single).medians(rounds).items():
+            times[name]["single"] = t
+    return [
+        {
+            "solver": entry.name,
+            "setting": entry.setting,
+            "seconds_a_case": times[entry.name],
+            "error": asdict(entry.accuracy),
+        }
+        for entry in entries
+    ]
+
+
+def _machine() -> dict[str, object]:
+    """Describe the machine and the versions, without naming either."""
+    model = platform.machine()
+    cpus = Path("/proc/cpuinfo")
+    if cpus.exists():
+        lines = [line for line in cpus.read_text().splitlines() if line.startswith("model name")]
+        model = lines[0].split(":")[1].strip() if lines else model
+    versions = {}
+    for package in PACKAGES:
+        try:
+            versions[package] = importlib.metadata.version(package)
+        except importlib.metadata.PackageNotFoundError:
+            continue
+    return {"processor": model, "python": platform.python_version(), "packages": versions}
+
+
+if __name__ == "__main__":
+    sys.exit(main())
