@@ -348,6 +348,7 @@ def _of_lubricant(courses: Courses) -> dict[str, object]:
     second = next(reversed(great_rises(found, BETWEEN_JUMPS, LAST_JUMP)), None)
     maxima, minima = (courses.of(extremum_spread(kind)) for kind in (MAXIMUM, MINIMUM))
     summit = peak(courses, second or BETWEEN_JUMPS, LAST)
+    strobes = courses.of(courses.strobe_spread)
     split = onset(maxima, LAST_JUMP, LAST)
     orderly = [nu for nu in scan(FIRST, 0.80) if abs(nu - 0.66) > 0.02]
     return {
@@ -357,7 +358,7 @@ def _of_lubricant(courses: Courses) -> dict[str, object]:
         "lowest": _least(courses.of(lowest)(scan(FIRST, LAST))),
         "onset_maxima": split,
         "onset_minima": onset(minima, LAST_JUMP, LAST),
-        "onset_strobes": onset(courses.of(courses.strobe_spread), LAST_JUMP, LAST),
+        "onset_strobes": onset(strobes, LAST_JUMP, LAST),
         "largest_rise": largest_rise(courses, summit["nu"], split or LAST),
         "loss_gained": {
             "first": first and loss_gained(courses, first),
@@ -367,10 +368,9 @@ def _of_lubricant(courses: Courses) -> dict[str, object]:
             "below": float(np.nanmedian(maxima(orderly))),
             "above": float(np.nanmedian(maxima(scan(1.1, LAST)))),
         },
-        "strobe_spread": {
-            f"{nu:.2f}": courses.strobe_spread(response)
-            for nu, response in zip(STROBED_AT, courses.at(STROBED_AT), strict=True)
-        },
+        "strobe_spread": dict(
+            zip((f"{nu:.2f}" for nu in STROBED_AT), strobes(STROBED_AT).tolist(), strict=True)
+        ),
     }
 
 

@@ -62,9 +62,13 @@ def phase_shift(evidence: Evidence) -> tuple[dict[str, float], str]:
 
 
 def loop_height(case: "xr.Dataset") -> float:
-    """Return the least rise between neighbouring extrema of y: the height of the loop, in y_st."""
-    heights = case["extremum_y_rel"].values
-    return float(np.abs(np.diff(heights)).min())
+    """Return the height of the loop in y, in y_st: the least rise between neighbouring extrema.
+
+    It is 0 where there are but two turning points a period, and hence no loop.
+    """
+    if float(case["turning_points_per_period"]) < 3.0:
+        return 0.0
+    return float(np.abs(np.diff(case["extremum_y_rel"].values)).min())
 
 
 def loop_depends_on_damping(evidence: Evidence) -> tuple[dict[str, float], str]:
