@@ -233,6 +233,16 @@ def test_maxima_of_a_constant_mesh_stay_put():
     assert response.y_max == pytest.approx(1.0, abs=1e-12)
 
 
+def test_two_turning_points_may_stand_close_together():
+    """Light bodies on stiff bearings turn twice within a step; the first is not found again."""
+    stiff = [
+        problem(nu, name, body_mass=4.0, bearing_stiffness=10.0)
+        for name in ("b-material", "c-lubricant")
+        for nu in np.linspace(0.6, 1.2, 64)
+    ]
+    assert {response.status for response in simulate(stiff, estimate_errors=False)} == {"ok"}
+
+
 def test_a_run_that_never_ends_is_given_up(monkeypatch):
     stiff = problem(bearing_stiffness=1e12, body_mass=1e-9, bearing_damping_ratio=0.0)
     fine = problem()

@@ -112,6 +112,8 @@ def bracket_turning(like, work):
         slope_before = slope
         place_before = place
     guess = low + (high - low) * (low_value / (low_value - high_value))
+    # A step that begins at a turning point must not find that point again.
+    guess = select(low_value <= rest, high, guess)
     return found, low, high, guess
 
 
