@@ -1,6 +1,7 @@
 # The pipeline: cases -> datasets -> figures and checks -> ledger -> report -> verdict.
 #
 #   snakemake                                           the study of the paper
+#   snakemake data                                      its cases and datasets only
 #   snakemake --config study=config/smoke.yaml          another study
 #   snakemake --profile workflow/profiles/slurm         on a cluster
 #
@@ -30,17 +31,28 @@ rule all:
         PLAN.case_files(PLAN.cases),
         paths.VERDICT,
 
+
+rule data:
+    input:
+        PLAN.case_files(PLAN.cases),
+        paths.RESONANCE,
+        paths.BIFURCATION,
+
+
 include: "workflow/rules/cases.smk"
 include: "workflow/rules/datasets.smk"
 include: "workflow/rules/figures.smk"
 include: "workflow/rules/claims.smk"
 include: "workflow/rules/report.smk"
 
+
 onstart:
     job.begin_run(len(PLAN.cases))
 
+
 onsuccess:
     job.tell_summary()
+
 
 onerror:
     job.tell_summary()

@@ -56,6 +56,11 @@ class Plan:
         return _digest((self.study.title, plan))
 
     @cached_property
+    def variants(self) -> str:
+        """The names of all variants."""
+        return " ".join(variant.name for variant, _ in self.study.study.frequencies())
+
+    @cached_property
     def stated(self) -> str:
         """All that the configuration states, reasons and title too: what the report depends on."""
         return _digest(self.study.model_dump_json())

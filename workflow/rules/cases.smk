@@ -11,12 +11,12 @@ for batch in PLAN.batches:
         output:
             update(PLAN.case_files(batch.cases)),
             batch=str(paths.batch_file(batch.name)),
+        resources:
+            mem_mb=1000,
+            runtime=30,
         params:
             recipe=PLAN.recipe,
             members=PLAN.members(batch),
             index=batch.index,
-        resources:
-            mem_mb=1000,
-            runtime=30,
         shell:
             "{PYTHON} {COMPUTE} {STUDY} {params.index}"

@@ -20,7 +20,7 @@ rule thresholds:
         str(paths.THRESHOLDS),
     params:
         recipe=PLAN.recipe,
-        grid=PLAN.grid,
+        variants=PLAN.variants,
     shell:
         "{PYTHON} {THRESHOLDS} {STUDY}"
 
@@ -30,9 +30,7 @@ rule fig1:
         pipeline.sources(FIG1),
         LOOKS,
     output:
-        report(
-            paths.FIGURES / "fig1.png", caption="../report/fig1.rst", category="Figures"
-        ),
+        report(paths.FIGURES / "fig1.png", caption="../report/fig1.rst", category="Figures"),
         paths.FIGURES / "fig1.svg",
     params:
         place=str(paths.FIGURES / "fig1"),

@@ -7,7 +7,6 @@ start at the same time would get into each other's way.
 
 import argparse
 import os
-import shutil
 import sys
 import tempfile
 from pathlib import Path
@@ -16,42 +15,63 @@ import nbformat
 import papermill
 from nbclient.exceptions import DeadKernelError
 from papermill.exceptions import PapermillExecutionError
-from traitlets.config import Config
 
 from gearmesh.job import job, tell
 
-START_TIMEOUT = 300
+START_TIMEOUT = 60
 """Seconds that a kernel may take to start: many may start at once."""
+
+ATTEMPTS = 3
+"""How often a kernel that does not answer is started: two may have taken the same port."""
 
 
 def execute(notebook: Path, executed: Path, parameters: dict[str, str]) -> bool:
     """Execute a notebook; returns whether it came to its end."""
     declared = papermill.inspect_notebook(str(notebook))
+    parameters = {name: value for name, value in parameters.items() if name in declared}
     temporary = executed.with_name(f".{executed.stem}.{os.getpid()}.ipynb")
     temporary.parent.mkdir(parents=True, exist_ok=True)
     try:
-        papermill.execute_notebook(
-            str(notebook),
-            str(temporary),
-            {name: value for name, value in parameters.items() if name in declared},
-            kernel_name="python3",
-            start_timeout=START_TIMEOUT,
-            progress_bar=False,
-            # Sockets in a private folder: no ports that kernels could quarrel about.
-            config=Config(KernelManager={"transport": "ipc"}),
-        )
+        start(notebook, temporary, parameters)
     except PapermillExecutionError as error:
         tell(f"error: {notebook}: cell {error.cell_index}: {error.ename}: {error.evalue}")
         tell(f"see the executed notebook, {executed}")
         return False
     except (DeadKernelError, RuntimeError) as error:
-        tell(f"error: {notebook}: the kernel died: {error}; run again")
+        tell(f"error: {notebook}: {error}; run again")
         return False
     finally:
         if temporary.exists():
             clean(temporary)
             temporary.replace(executed)
     return True
+
+
+def start(notebook: Path, executed: Path, parameters: dict[str, str]) -> None:
+    """Execute a notebook in a kernel that answers."""
+    for attempt in range(1, ATTEMPTS + 1):
+        try:
+            papermill.execute_notebook(
+                str(notebook),
+                str(executed),
+                parameters,
+                kernel_name="python3",
+                start_timeout=START_TIMEOUT,
+                progress_bar=False,
+            )
+        except RuntimeError as error:
+            silent = "respond" in str(error)
+            if not silent or attempt == ATTEMPTS:
+                raise
+        else:
+            return
+
+
+def silence_kernels(ipython_folder: Path) -> None:
+    """Keep what kernels say of themselves, such as that they are told to end, off the screen."""
+    profile = ipython_folder / "profile_default"
+    profile.mkdir()
+    (profile / "ipython_kernel_config.py").write_text("c.IPKernelApp.log_level = 'CRITICAL'\n")
 
 
 def clean(path: Path) -> None:
@@ -72,15 +92,13 @@ def main() -> None:
     parser.add_argument("executed", type=Path)
     parser.add_argument("parameters", nargs="*", metavar="NAME=VALUE")
     options = parser.parse_args()
-    private = tempfile.mkdtemp(prefix="ipython-")
-    os.environ["IPYTHONDIR"] = private
-    try:
+    with tempfile.TemporaryDirectory(prefix="ipython-", ignore_cleanup_errors=True) as private:
+        os.environ["IPYTHONDIR"] = private
+        silence_kernels(Path(private))
         with job("figures"):
             parameters = dict(item.split("=", 1) for item in options.parameters)
             if not execute(options.notebook, options.executed, parameters):
                 sys.exit(1)
-    finally:
-        shutil.rmtree(private, ignore_errors=True)
 
 
 if __name__ == "__main__":

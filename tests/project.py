@@ -1,0 +1,142 @@
+"""A copy of the project in which the real pipeline runs, for tests that edit, break and kill."""
+
+import hashlib
+import os
+import shutil
+import signal
+import subprocess
+import sys
+from pathlib import Path
+
+ROOT = Path(__file__).parents[1]
+COPIED = ("Snakefile", "config", "notebooks", "src", "workflow", "README.md")
+PROFILE = "workflow/profiles/default"
+PATIENCE = 280
+"""Seconds after which a run hangs."""
+
+TINY = """\
+base: smoke.yaml
+title: A few cases
+study:
+  nu: {start: 0.6, stop: 1.2, step: 0.2}
+  variants: [a-conservative, c-material, c-lubricant]
+  cases_per_job: 4
+  strong_damping: {variant: c-material, factor: 5, nu: {start: 0.6, stop: 0.8, step: 0.2}}
+  time_courses: null
+"""
+"""A study of 14 cases, for tests that do without figures."""
+
+
+class Project:
+    """The project in a folder of its own.
+
+    Parameters
+    ----------
+    folder : Path
+        Where it is.
+    config : str
+        The study that runs there.
+    """
+
+    def __init__(self, folder: Path, config: str) -> None:
+        self.folder = folder
+        self.config = config
+        self.environment = os.environ | {"PYTHONPATH": str(folder / "src")}
+
+    @classmethod
+    def create(cls, folder: Path, config: str) -> "Project":
+        """Copy the working tree, compiled code included."""
+        folder.mkdir(parents=True)
+        for name in COPIED:
+            source = ROOT / name
+            if source.is_dir():
+                shutil.copytree(source, folder / name)
+            elif source.exists():
+                shutil.copy2(source, folder / name)
+        (folder / "config" / "tiny.yaml").write_text(TINY)
+        return cls(folder, config)
+
+    def copy(self, folder: Path) -> "Project":
+        """Copy a project with its results and with what Snakemake knows of them."""
+        shutil.copytree(self.folder, folder, symlinks=True)
+        return Project(folder, self.config)
+
+    def command(self, *arguments: str, cores: int = 2) -> list[str]:
+        """Return the command line of a run."""
+        return [
+            *(sys.executable, "-m", "snakemake", "--profile", PROFILE),
+            *("--cores", str(cores), "--config", f"study={self.config}", "--"),
+            *arguments,
+        ]
+
+    def run(self, *arguments: str, cores: int = 2) -> subprocess.CompletedProcess:
+        """Run targets to the end."""
+        return subprocess.run(
+            self.command(*arguments, cores=cores),
+            cwd=self.folder,
+            env=self.environment,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.STDOUT,
+            text=True,
+            timeout=PATIENCE,
+            check=False,
+        )
+
+    def start(self, *arguments: str) -> subprocess.Popen:
+        """Start a run as the leader of a process group of its own."""
+        return subprocess.Popen(
+            self.command(*arguments),
+            cwd=self.folder,
+            env=self.environment,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.STDOUT,
+            text=True,
+            start_new_session=True,
+        )
+
+    def plan(self, *arguments: str) -> set[str]:
+        """Return the names of the rules that a run would execute."""
+        command = self.command(*arguments)
+        command[command.index("--profile") : command.index("--profile") + 2] = []
+        found = subprocess.run(
+            [*command[:3], "--dry-run", "--nolock", "--rerun-incomplete", *command[3:]],
+            cwd=self.folder,
+            env=self.environment,
+            capture_output=True,
+            text=True,
+            timeout=PATIENCE,
+            check=False,
+        )
+        assert found.returncode == 0, found.stdout + found.stderr
+        lines = (found.stdout + found.stderr).splitlines()
+        return {
+            line.split()[1].rstrip(":")
+            for line in lines
+            if line.startswith(("rule ", "localrule "))
+        }
+
+    def path(self, name: str | Path) -> Path:
+        """Return the path of a file of the project."""
+        return self.folder / name
+
+    def edit(self, name: str, old: str, new: str) -> None:
+        """Replace a text that must be there."""
+        path = self.path(name)
+        text = path.read_text(encoding="utf-8")
+        assert old in text, f"{name} lacks {old!r}"
+        path.write_text(text.replace(old, new, 1), encoding="utf-8")
+
+    def results(self) -> dict[str, str]:
+        """Return every file of the results, hidden ones aside, with its SHA-256."""
+        results = self.path("results")
+        return {
+            str(path.relative_to(results)): hashlib.sha256(path.read_bytes()).hexdigest()
+            for path in sorted(results.rglob("*"))
+            if path.is_file() and not any(p.startswith(".") for p in path.relative_to(results).parts)
+        }
+
+
+def end(process: subprocess.Popen, how: signal.Signals) -> None:
+    """Send a signal to a run and all that it started, and wait for its end."""
+    os.killpg(process.pid, how)
+    process.communicate(timeout=PATIENCE)

@@ -1,0 +1,106 @@
+"""The pipeline on the small study: what it leaves, and what an edit reruns."""
+
+import json
+import shutil
+from pathlib import Path
+
+import pytest
+import xarray as xr
+from project import ROOT, Project
+
+FIGURES = [f"fig{number}" for number in range(2, 8)]
+SMOKE = "config/smoke.yaml"
+
+
+@pytest.fixture(scope="session")
+def smoke(tmp_path_factory) -> Project:
+    """The small study, run to its end."""
+    project = Project.create(tmp_path_factory.mktemp("smoke") / "project", SMOKE)
+    project.output = project.run("all").stdout
+    return project
+
+
+@pytest.fixture
+def edited(smoke: Project, tmp_path: Path) -> Project:
+    """A copy of it to edit."""
+    return smoke.copy(tmp_path / "project")
+
+
+def test_everything_that_the_contract_lists_is_there(smoke):
+    found = smoke.results()
+    for name in ("fig1", *FIGURES):
+        assert {f"figures/{name}.png", f"figures/{name}.svg"} <= found.keys()
+    for name in FIGURES:
+        assert {f"notebooks/{name}.ipynb", f"checks/{name}.json"} <= found.keys()
+    for name in ("datasets/resonance.nc", "datasets/bifurcation.nc", "claims.json"):
+        assert name in found
+    assert "report/index.html" in found
+    assert "cases/c-material/nu-0.6500.nc" in found
+
+
+def test_a_run_tells_its_progress_and_its_end(smoke):
+    assert "299 of 299 cases" in smoke.output
+    assert "cases: 299 computed, 0 kept" in smoke.output
+    assert "time of jobs: cases" in smoke.output
+    assert "claims: " in smoke.output
+
+
+def test_datasets_hold_what_the_case_files_hold(smoke):
+    resonance = xr.open_dataset(smoke.path("results/datasets/resonance.nc"))
+    bifurcation = xr.open_dataset(smoke.path("results/datasets/bifurcation.nc"))
+    for variant, nu in (("a-conservative", 0.6), ("c-lubricant", 1.2), ("c-material-5x", 0.65)):
+        case = xr.open_dataset(smoke.path(f"results/cases/{variant}/nu-{nu:.4f}.nc"))
+        row = resonance.sel(variant=variant).sel(nu=nu, method="nearest")
+        scalars = [name for name in case.data_vars if not case[name].dims and name != "seal"]
+        assert set(scalars) == set(resonance.data_vars) - {"seal"}
+        for name in scalars:
+            assert row[name].item() == case[name].item(), name
+        course = bifurcation.sel(variant=variant).sel(nu=nu, method="nearest")
+        count = case.sizes["extremum"]
+        for name in ("extremum_time", "extremum_y", "extremum_y_rel", "extremum_kind"):
+            assert course[name][:count].values.tolist() == case[name].values.tolist()
+            assert not course[name][count:].fillna(0).any()
+        for name in ("strobe_y", "strobe_v_rel"):
+            assert course[name].values.tolist() == case[name].values.tolist()
+
+
+def test_a_rerun_has_nothing_to_do(smoke):
+    before = {path: path.stat().st_mtime_ns for path in smoke.path("results").rglob("*.*")}
+    if smoke.path("results/verdict.txt").exists():
+        assert "Nothing to be done" in smoke.run("all").stdout
+    else:  # a claim came out otherwise than expected: only the verdict is given again
+        assert smoke.plan("all") == {"verdict", "all"}
+    after = {path: path.stat().st_mtime_ns for path in smoke.path("results").rglob("*.*")}
+    assert after == before
+
+
+# What an edit reruns, besides the verdict: (what is edited, how, which rules run).
+END = {"ledger", "report"}
+CASES = {"cases_0"}
+AFTER_CASES = {"datasets", *FIGURES, *END}
+EVERYTHING = {*CASES, "thresholds", "printed", *AFTER_CASES}
+
+INCREMENTS = {
+    "README": ("README.md", "", "more\n", set()),
+    "plot": ("src/gearmesh/figures/fig2.py", '"""Fig. 2', '"""Figure 2', {"fig2", *END}),
+    "notebook": ("notebooks/fig3.ipynb", "## What is seen", "## Seen", {"fig3", *END}),
+    "check": ("src/gearmesh/claims/fig5.py", '"""', '"""About it: ', {"fig5", *END}),
+    "caption": ("workflow/report/fig4.rst", "", "More. ", {"report"}),
+    "thresholds": ("src/gearmesh/thresholds.py", '"""', '""" ', {"thresholds", "printed", *FIGURES, *END}),
+    "datasets": ("src/gearmesh/datasets.py", '"""', '""" ', {*AFTER_CASES}),
+    "physics": ("src/gearmesh/friction.py", '"""', '""" ', EVERYTHING),
+    "solver": ("src/gearmesh/integrator.py", '"""', '""" ', EVERYTHING),
+    "tolerance": ("config/paper.yaml", "tolerance: 1e-10", "tolerance: 1e-9", EVERYTHING),
+    "parameter": ("config/paper.yaml", "backlash: 40 um", "backlash: 41 um", EVERYTHING),
+    "units": ("config/paper.yaml", "backlash: 40 um", "backlash: 0.040 mm", {"report"}),
+    "reason": ("config/paper.yaml", "reasons: # one", "reasons: # just one", set()),
+    "step": ("config/smoke.yaml", "nu: {step: 0.05}", "nu: {step: 0.1}", EVERYTHING - {"printed"}),
+    "range": ("config/smoke.yaml", "nu: {step: 0.05}", "nu: {step: 0.05, stop: 1.3}", EVERYTHING - {"printed"}),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("row", INCREMENTS)
+def test_an_edit_reruns_its_consequences_only(edited, row):
+    name, old, new, expected = INCREMENTS[row]
+    edited.edit(name, old, new)
+    assert edited.plan("all") - {"verdict", "all"} == expected
