@@ -55,6 +55,7 @@ def save(figure: Figure, path: Path | str) -> tuple[Path, Path]:
     png.parent.mkdir(parents=True, exist_ok=True)
     with style.context(["default", STYLE]):
         figure.savefig(png, metadata={"Software": None})
+        figure.set_layout_engine("none")  # the layout stands; finding it again would take as long
         figure.savefig(svg, metadata={"Date": None, "Creator": None})
     return png, svg
 

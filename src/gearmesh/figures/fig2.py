@@ -31,8 +31,8 @@ LINEAR_TO = 4.0
 """The ordinate of panels with the conservative course is linear up to here (in y_st) and
 logarithmic beyond: that course reaches five times farther than the others."""
 
-MARKED_EVERY = {"material": (12, 0), "both": (12, 6), "conservative": (2, 0), "lubricant": (1, 0)}
-"""Symbols stand at every n-th frequency from the given one on, dots at all of them: no line
+SYMBOLS = {"material": 20, "both": 20, "conservative": 120}
+"""Symbols along a course, where not all frequencies get one; dots stand at all of them. No line
 joins the points, so that a jump stays a gap."""
 
 
@@ -79,9 +79,11 @@ def draw(resonance: xr.Dataset) -> Figure:
 
 def _plot_course(axes: Axes, course: xr.Dataset, kind: str) -> None:
     look = palette.COURSES[kind]
-    step, first = MARKED_EVERY[kind]
+    nu = course["nu"].values
+    step = max(1, nu.size // SYMBOLS.get(kind, nu.size))
+    first = step // 2 if kind == "both" else 0  # between the symbols of the course it lies on
     for name in ("y_max_rel", "y_min_rel"):
-        nu, y = course["nu"].values, course[name].values
+        y = course[name].values
         if step > 1:
             axes.plot(nu, y, ls="none", marker=".", ms=1.6, mew=0, color=look.colour, zorder=2)
         axes.plot(
