@@ -114,6 +114,18 @@ def test_steps_below_the_visible_are_no_jumps():
     assert thresholds.jumps(course, 0.6, 1.0) == []
 
 
+def test_scans_share_their_places():
+    whole = thresholds.scan(0.6, 1.2)
+    assert whole.size == 241
+    assert (whole[0], whole[-1]) == (0.6, 1.2)
+    part = thresholds.scan(0.76543, 1.1)
+    assert part[0] == 0.76543
+    assert set(part[1:]) < set(whole)
+    assert np.diff(part).max() <= thresholds.SCAN * (1 + 1e-9)
+    assert thresholds.scan(0.7, 0.7).tolist() == [0.7]
+    assert thresholds.scan(0.8, 0.7).size == 0
+
+
 def test_only_great_rises_count():
     found = [
         {"nu": 0.62, "step": 0.3},

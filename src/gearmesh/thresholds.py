@@ -141,8 +141,14 @@ def extremum_spread(kind: int) -> Measure:
 
 
 def scan(low: float, high: float) -> np.ndarray:
-    """Return tunings from `low` to `high` with a spacing of `SCAN` at most; none if they cross."""
-    return np.linspace(low, high, max(0, int(np.ceil((high - low) / SCAN - 1e-9)) + 1))
+    """Return the two ends and the multiples of `SCAN` between them; nothing if the ends cross.
+
+    Scans share their places, so that what one has run another finds known.
+    """
+    if high < low:
+        return np.empty(0)
+    inside = np.round(np.arange(np.ceil(low / SCAN), np.floor(high / SCAN) + 1) * SCAN, 10)
+    return np.unique(np.concatenate([[low], inside[(inside > low) & (inside < high)], [high]]))
 
 
 def jumps(courses: Courses, low: float, high: float) -> list[dict[str, float]]:
@@ -265,9 +271,9 @@ def relative_difference(one: Courses, other: Courses, low: float, high: float) -
 
 def loss_gained(courses: Courses, jump: float) -> float:
     """Return by how much the share of contact loss is greater above a jump than below it."""
-    beside = np.linspace(SCAN, 8 * SCAN, 8)
     loss = courses.of(contact_loss)
-    return float(np.nanmedian(loss(jump + beside)) - np.nanmedian(loss(jump - beside)))
+    below, above = scan(jump - 8 * SCAN, jump - SCAN), scan(jump + SCAN, jump + 8 * SCAN)
+    return float(np.nanmedian(loss(above)) - np.nanmedian(loss(below)))
 
 
 def typical_spread(courses: Iterable[Courses], low: float, high: float) -> float:
