@@ -63,6 +63,11 @@ def executed_notebook(name: str) -> Path:
     return EXECUTED_NOTEBOOKS / f"{name}.ipynb"
 
 
+def notebook_page(name: str) -> Path:
+    """Return a notebook's executed copy as a page of the report."""
+    return REPORT.parent / "notebooks" / f"{name}.html"
+
+
 def check_file(name: str) -> Path:
     """Return the results of the checks that a notebook makes."""
     return CHECKS / f"{name}.json"

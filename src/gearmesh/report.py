@@ -30,8 +30,6 @@ from gearmesh.presentation import environment, number
 CAPTIONS = Path("workflow/report")
 """Where the captions stand: plain text, one file a figure."""
 
-NOTEBOOK_PAGES = paths.REPORT.parent / "notebooks"
-
 
 @dataclass(frozen=True, slots=True)
 class Figure:
@@ -69,15 +67,13 @@ def write_report(study: Study) -> None:
     InputError
         If a result is missing or damaged.
     """
-    NOTEBOOK_PAGES.mkdir(parents=True, exist_ok=True)
     for name in paths.NOTEBOOK_NAMES:
-        page = notebook_page(paths.executed_notebook(name))
-        (NOTEBOOK_PAGES / f"{name}.html").write_text(page, encoding="utf-8")
+        _write(paths.notebook_page(name), notebook_page(paths.executed_notebook(name)))
     captions = {
         name: (CAPTIONS / f"{name}.rst").read_text(encoding="utf-8") for name in paths.FIGURE_NAMES
     }
     page = render(study, read_entries(paths.LEDGER), open_dataset(paths.RESONANCE), captions)
-    paths.REPORT.write_text(page, encoding="utf-8")
+    _write(paths.REPORT, page)
 
 
 def render(
@@ -129,6 +125,11 @@ def notebook_page(path: Path) -> str:
     return template.render(name=path.stem, body=body, highlighting=style)
 
 
+def _write(path: Path, page: str) -> None:
+    path.parent.mkdir(parents=True, exist_ok=True)
+    path.write_text(page, encoding="utf-8")
+
+
 def _relative(target: Path) -> str:
     return Path(os.path.relpath(target, paths.REPORT.parent)).as_posix()
 
@@ -136,7 +137,7 @@ def _relative(target: Path) -> str:
 def _notebook_of(figure: str) -> str | None:
     """Return the page of the notebook that checks the claims of `figure`, from the report."""
     known = figure in paths.NOTEBOOK_NAMES
-    return _relative(NOTEBOOK_PAGES / f"{figure}.html") if known else None
+    return _relative(paths.notebook_page(figure)) if known else None
 
 
 def _figure(name: str, caption: str, entries: Iterable[Entry]) -> Figure:

@@ -8,11 +8,12 @@ rule report:
         templates=pipeline.templates(),
         captions=pipeline.captions(),
         ledger=paths.LEDGER,
-        thresholds=paths.THRESHOLDS,
+        resonance=paths.RESONANCE,
         figures=[file for name in paths.FIGURE_NAMES for file in paths.figure_files(name)],
         notebooks=[paths.executed_notebook(name) for name in paths.NOTEBOOK_NAMES],
     output:
-        report(paths.REPORT, category="Report"),
+        report(paths.REPORT, caption="../report/page.rst", category="Report"),
+        [paths.notebook_page(name) for name in paths.NOTEBOOK_NAMES],
     params:
         study=PLAN.stated,
     shell:

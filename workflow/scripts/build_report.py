@@ -3,8 +3,9 @@
 import argparse
 from pathlib import Path
 
-from gearmesh import paths
+from gearmesh.configuration import load_study
 from gearmesh.job import job
+from gearmesh.report import write_report
 
 
 def main() -> None:
@@ -13,8 +14,7 @@ def main() -> None:
     parser.add_argument("config", type=Path)
     options = parser.parse_args()
     with job("report"):
-        paths.REPORT.parent.mkdir(parents=True, exist_ok=True)
-        paths.REPORT.write_text(f"{options.config}")
+        write_report(load_study(options.config))
 
 
 if __name__ == "__main__":
