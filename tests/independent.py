@@ -27,7 +27,7 @@ from gearmesh.motion import (
     mode_of,
     relative_motion,
     run_out_argument,
-    static_equilibrium,
+    start,
 )
 from gearmesh.response import CONTACT_LOSS, INVERSE_MESH, NORMAL_MESH
 
@@ -80,7 +80,7 @@ class _Run:
         self.problem = problem
         self.options = {"method": "DOP853", "rtol": rtol, "atol": rtol, "max_step": max_step}
         self.time = problem.start_time
-        q, v = static_equilibrium(problem)
+        q, v = start(problem)
         self.state = np.concatenate([q, v])
         self.mode = mode_of(problem, self.time, q, v)
         self.has_signs = problem.friction_coefficient != 0.0 and follows_run_out(
@@ -229,7 +229,7 @@ def linear_strobes(problem: Problem) -> np.ndarray:
 
     For linear damping in normal mesh throughout, without friction, run-out and deviation.
     """
-    q, v = static_equilibrium(problem)
+    q, v = start(problem)
     state = np.concatenate([q, v, [1.0]])
     period_map = np.eye(13)
     for low, high in itertools.pairwise(_stops(problem)):

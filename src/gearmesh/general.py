@@ -15,7 +15,7 @@ from gearmesh.friction import follows_run_out, pairs_in_contact
 from gearmesh.general_kernel import EXTREMUM, SAMPLE, SUMMARY, run
 from gearmesh.general_roots import MAX_DEGREE
 from gearmesh.general_series import CASE, MODE, STRETCH
-from gearmesh.motion import Problem, bearing_damping, dynamic_force, static_equilibrium
+from gearmesh.motion import Problem, bearing_damping, dynamic_force, start, sum_and_difference
 from gearmesh.response import CONTACT_LOSS, Response, Samples
 
 LOOSENING = 100.0
@@ -28,12 +28,16 @@ _STATUS = ("ok", "step_limit", "extremum_overflow", "not_finite")
 _EXTREMA_PER_PERIOD = 64
 _STEPS_PER_PERIOD = 2000
 
+# A step this long, in radians of the fastest oscillation, multiplies rounding errors by 50.
+_LONGEST_STEP = 4.0
+
 
 def integrate(
     problem: Problem,
     tolerance: float = 1e-10,
     samples_per_period: int = 0,
     order: int | None = None,
+    estimate_errors: bool = True,
 ) -> Response:
     """Integrate `problem` and measure its response.
 
@@ -46,19 +50,23 @@ def integrate(
         Samples of the time course in each kept mesh period; 0 for none.
     order : int, optional
         Degree of the Taylor polynomials, 4 to 28; by default what suits the tolerance.
+    estimate_errors : bool
+        Whether the run has a companion, `LOOSENING` times less accurate, whose difference gives
+        `Response.y_max_error` and `y_min_error`. Costs as much as the run.
 
     Returns
     -------
     Response
         A run that fails has a status other than ``"ok"``.
     """
-    summary, strobes, extrema, samples = _run(problem, tolerance, samples_per_period, order)
+    summary, state, strobes, extrema, samples = _run(
+        problem, tolerance, samples_per_period, order or suitable_order(tolerance)
+    )
     if summary["status"]:
         return Response(_STATUS[summary["status"]], problem.period)
-    companion, *_ = _run(problem, tolerance * LOOSENING, 0, order)
-    errors = [abs(float(summary[name] - companion[name])) for name in ("y_max", "y_min")]
-    if companion["status"]:
-        errors = [math.inf, math.inf]
+    errors = [math.nan, math.nan]
+    if estimate_errors:
+        errors = _estimate_errors(problem, tolerance, order, summary)
     periods = problem.kept_revolutions * problem.teeth
     duration = periods * problem.period
     return Response(
@@ -78,13 +86,23 @@ def integrate(
         turning_points_per_period=len(extrema) / periods,
         y_max_error=errors[0],
         y_min_error=errors[1],
-        sensitive=max(errors) > SENSITIVE * tolerance,
+        final_state=sum_and_difference(state[:6], state[6:]),
+        sensitive=any(error > SENSITIVE * tolerance for error in errors),
         samples=_samples(samples) if samples_per_period else None,
     )
 
 
-def _run(problem: Problem, tolerance: float, samples_per_period: int, order: int | None):
-    """Return the summary, strobes, extrema and samples of one run."""
+def _estimate_errors(problem: Problem, tolerance: float, order: int | None, summary) -> list[float]:
+    """Return how far y_max and y_min are from those of the companion run."""
+    loose = tolerance * LOOSENING
+    companion, *_ = _run(problem, loose, 0, order or suitable_order(loose))
+    if companion["status"]:
+        return [math.inf, math.inf]
+    return [abs(float(summary[name] - companion[name])) for name in ("y_max", "y_min")]
+
+
+def _run(problem: Problem, tolerance: float, samples_per_period: int, order: int):
+    """Return the summary, the final state, strobes, extrema and samples of one run."""
     periods = problem.revolutions * problem.teeth
     kept = problem.kept_revolutions * problem.teeth
     strobes = np.zeros((periods + 1, 2))
@@ -92,12 +110,13 @@ def _run(problem: Problem, tolerance: float, samples_per_period: int, order: int
     samples = np.zeros(samples_per_period * kept, SAMPLE)
     summaries = np.zeros(1, SUMMARY)
     summaries["y_max"], summaries["y_min"] = -np.inf, np.inf
+    state = np.concatenate(start(problem))
     run(
-        _case(problem, tolerance, order or suitable_order(tolerance)),
+        _case(problem, tolerance, order),
         _stretches(problem),
         _waves(problem),
         np.array(problem.deviation, float).reshape(-1, 2),
-        np.concatenate(static_equilibrium(problem)),
+        state,
         np.zeros(1, MODE),
         strobes,
         extrema,
@@ -106,7 +125,7 @@ def _run(problem: Problem, tolerance: float, samples_per_period: int, order: int
         summaries,
     )
     summary = summaries[0]
-    return summary, strobes, extrema[: summary["extrema"]], samples
+    return summary, state, strobes, extrema[: summary["extrema"]], samples
 
 
 def suitable_order(tolerance: float) -> int:
@@ -140,10 +159,17 @@ def _case(problem: Problem, tolerance: float, order: int) -> np.ndarray:
     case["periods"] = problem.revolutions * problem.teeth
     case["first_kept"] = case["periods"] - problem.kept_revolutions * problem.teeth
     case["tolerance"] = tolerance
+    case["longest_step"] = _LONGEST_STEP / _highest_frequency(problem)
     case["order"] = order
     per_period = _STEPS_PER_PERIOD + 20 * (problem.stiffness_harmonics + len(problem.deviation))
     case["most_steps"] = per_period * case["periods"]
     return case
+
+
+def _highest_frequency(problem: Problem) -> float:
+    """Return a bound of the natural frequencies in contact: the trace of the coupled stiffness."""
+    mesh = problem.stiffness_max * (1.0 + 2.0 / problem.body_mass)
+    return math.sqrt(mesh + problem.bearing_stiffness / problem.body_mass)
 
 
 def _stretches(problem: Problem) -> np.ndarray:
@@ -153,13 +179,13 @@ def _stretches(problem: Problem) -> np.ndarray:
         places.update(stiffness.switch_phases(problem.contact_ratio))
     if problem.friction_coefficient:
         places.add(0.5)
-    start = problem.initial_phase
-    edges = [0.0, *sorted((place - start) % 1.0 for place in places), 1.0]
+    phase = problem.initial_phase
+    edges = [0.0, *sorted((place - phase) % 1.0 for place in places), 1.0]
     parts = []
     for low, high in itertools.pairwise(edges):
         if low == high:
             continue
-        middle = 0.5 * (low + high) + start
+        middle = 0.5 * (low + high) + phase
         pairs = pairs_in_contact(middle, problem.contact_ratio)
         level = stiffness.rectangular(
             middle, problem.contact_ratio, problem.stiffness_max, problem.stiffness_min

@@ -75,6 +75,9 @@ SAMPLE = np.dtype(
 
 _PASSED, _STOPPED, _TURNED, _CROSSED, _BRACKET, _SLIP, _RELEASED = range(7)
 
+# Motion of less than this many times the rounding of the coordinates is rest: it has no direction.
+_REST = 32.0 * np.finfo(np.float64).eps
+
 # Beyond this relative motion, in y_st, a run counts as lost.
 _FAR = 1e9
 
@@ -119,17 +122,33 @@ def _cross(case, mode, summary):
 
 
 @njit(cache=True)
-def _settle_direction(case, stretch, mode, fourier, series, extrema, summary):
+def _first_sign(case, stretch, mode, fourier, series):
+    """Return the sign of the first coefficient of y' that does not vanish, 0 if all do."""
+    expand(case, stretch, mode, fourier, series, case.order)
+    for k in range(case.order):
+        if series[V, k] != 0.0:
+            return np.sign(series[V, k])
+    return 0.0
+
+
+@njit(cache=True)
+def _settle_direction(case, stretch, mode, fourier, series, rest, extrema, summary):
     """Find the direction of motion and the regime, and record an extremum where y has turned."""
     if mode.direction * series[V, 0] < 0.0:
         # The turning point just passed, but for rounding.
         mode.turns = True
         series[V, 0] = 0.0
     now = np.sign(series[V, 0])
-    if now == 0.0:
+    if abs(series[V, 0]) < rest:
         # With y' damping vanishes, and the acceleration does not depend on the direction.
         expand(case, stretch, mode, fourier, series, 2)
-        now = np.sign(series[V, 1])
+        if now == 0.0:
+            now = np.sign(series[V, 1])
+        if abs(series[V, 1]) < rest:
+            mode.direction = (
+                now if now != 0.0 else _first_sign(case, stretch, mode, fourier, series)
+            )
+            return
     if now != 0.0 and now != mode.direction:
         if mode.direction != 0.0:
             _record_extremum(case, mode, series[Y, 0], extrema, summary)
@@ -156,10 +175,18 @@ def _settle_slip(case, stretch, mode, fourier, state, series):
     mean = 0.5 * (state[6 + Z_3] + state[6 + Z_2])
     for i in (Z_3, Z_2):
         state[6 + i] = series[i, 1] = mean
+    if abs(_needed_force(case, state)) < _REST:
+        mean = 0.5 * (state[Z_3] + state[Z_2])
+        for i in (Z_3, Z_2):
+            state[i] = series[i, 0] = mean
     elastic = elastic_coefficient(case, stretch, mode, series, fourier, 0)
     available = case.friction * elastic * stretch.gamma * mode.run_out_sign
+    opposes = available > 0.0
+    if mode.on_level and mode.regime != CONTACT_LOSS:
+        # The elastic force is 0 only now; where y goes, it goes.
+        opposes = mode.direction * stretch.gamma * mode.run_out_sign > 0.0
     needed = _needed_force(case, state)
-    if available > 0.0 and abs(needed) <= available:
+    if opposes and abs(needed) <= available:
         mode.slip_sign = 0.0
     else:
         mode.slip_sign = 1.0 if needed <= 0.0 else -1.0
@@ -191,7 +218,7 @@ def _settle_signs(case, stretch, mode, fourier, state, series):
 @njit(cache=True)
 def _choose_step(case, series, remaining):
     """Return the step for which the last two terms stay below the tolerance, to the next stop."""
-    step = remaining
+    step = min(remaining, case.longest_step)
     for k in range(case.order - 1, case.order + 1):
         size = abs(series[Y, k])
         for i in range(6):
@@ -235,15 +262,36 @@ def _first_of_signs(case, stretch, mode, state, step, series, scaled, table):
 
 
 @njit(cache=True)
-def _find_event(case, stretch, mode, state, step, series, scaled, table):
+def _rounding(state):
+    """Return the scale of the rounding errors of y' and y'', with forces of 1 and more."""
+    total = 1.0
+    for i in range(12):
+        total += abs(state[i])
+    return total
+
+
+@njit(cache=True)
+def _rests(row, degree, step, rest):
+    """Return whether a series stays below `rest` throughout the step."""
+    total = 0.0
+    power = 1.0
+    for k in range(degree + 1):
+        total += abs(row[k]) * power
+        if total >= rest:
+            return False
+        power *= step
+    return True
+
+
+@njit(cache=True)
+def _find_event(case, stretch, mode, state, step, series, rest, scaled, table):
     """Return the share of the step up to its first event, and what that is."""
     end = 1.0
     event = _STOPPED if step == stretch.end - mode.time else _PASSED
-    if mode.direction == 0.0:
-        return end, event
-    turn = _first(series[V], case.order - 1, step, mode.direction, scaled, table)
-    if turn <= 1.0:
-        end, event = turn, _TURNED
+    if not _rests(series[V], case.order - 1, step, rest):
+        turn = _first(series[V], case.order - 1, step, mode.direction, scaled, table)
+        if turn <= 1.0:
+            end, event = turn, _TURNED
     if case.follows_run_out:
         signs, kind = _first_of_signs(case, stretch, mode, state, step, series, scaled, table)
         if signs < end:
@@ -301,7 +349,7 @@ def _measure(case, mode, series, duration, summary):
 @njit(cache=True)
 def _advance(case, mode, state, series, duration):
     """Move the state along the series; forget what was exactly 0 before."""
-    if duration == 0.0:
+    if mode.time + duration == mode.time:
         return
     for i in range(6):
         state[i], state[6 + i] = evaluate_with_slope(series[i], case.order, duration)
@@ -422,10 +470,11 @@ def run(
         if not settled or summary.steps > case.most_steps:
             summary.status = STEP_LIMIT
             return
-        _settle_direction(case, stretch, mode, fourier, series, extrema, summary)
+        rest = _REST * _rounding(state)
+        _settle_direction(case, stretch, mode, fourier, series, rest, extrema, summary)
         expand(case, stretch, mode, fourier, series, case.order)
         step = _choose_step(case, series, stretch.end - mode.time)
-        share, event = _find_event(case, stretch, mode, state, step, series, scaled, table)
+        share, event = _find_event(case, stretch, mode, state, step, series, rest, scaled, table)
         duration = share * step
         if mode.period >= case.first_kept:
             _measure(case, mode, series, duration, summary)

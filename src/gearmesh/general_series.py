@@ -40,6 +40,7 @@ CASE = np.dtype(
         ("periods", np.int64),
         ("first_kept", np.int64),
         ("tolerance", np.float64),
+        ("longest_step", np.float64),
         ("order", np.int64),
         ("most_steps", np.int64),
     ]

@@ -318,7 +318,7 @@ def accelerations(problem: Problem, time: float, q, v, mode: Mode | None = None)
 
 
 def static_equilibrium(problem: Problem) -> tuple[np.ndarray, np.ndarray]:
-    """Return coordinates and rates at the start: at rest, F_st in a mesh of stiffness C_s.
+    """Return coordinates and rates at rest, with F_st in a mesh of stiffness C_s.
 
     The relative motion is y = 1 there, run-out and profile deviation included; both wheels share
     the rotation that this takes, and the bearings carry F_st. At rest means that the six rates
@@ -336,3 +336,26 @@ def static_equilibrium(problem: Problem) -> tuple[np.ndarray, np.ndarray]:
         q[ROTATION_3] += 0.5 * (1.0 - y)
         q[ROTATION_2] = q[ROTATION_3]
     return q, v
+
+
+def start(problem: Problem) -> tuple[np.ndarray, np.ndarray]:
+    """Return coordinates and rates at the start of the run.
+
+    Static equilibrium, or what `Problem.initial_state` says: its sums and differences are shared
+    evenly by the wheels, and nothing moves across the mesh line.
+    """
+    if problem.initial_state is None:
+        return static_equilibrium(problem)
+    u, u_rate, b, b_rate = problem.initial_state
+    shares = np.array([[0.5, 0.0], [0.5, 0.0], [0.0, 0.5], [0.0, -0.5], [0.0, 0.0], [0.0, 0.0]])
+    return shares @ [u, b], shares @ [u_rate, b_rate]
+
+
+def sum_and_difference(q, v) -> tuple[float, float, float, float]:
+    """Return u, u', b, b' with u = R_b (phi_3 + phi_2) and b = y_3 - y_2."""
+    return (
+        float(q[ROTATION_3] + q[ROTATION_2]),
+        float(v[ROTATION_3] + v[ROTATION_2]),
+        float(q[Y_3] - q[Y_2]),
+        float(v[Y_3] - v[Y_2]),
+    )
