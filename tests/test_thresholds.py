@@ -168,9 +168,10 @@ def test_an_onset_is_where_the_spread_is_visible_for_good():
     def spread(nu):
         return np.where((nu > 1.1234) | (np.abs(nu - 1.05) < 0.01), 1.0, 0.0)
 
-    assert thresholds.onset(spread, 1.0, 1.2) == pytest.approx(1.1234, abs=WIDTH)
-    assert thresholds.onset(lambda nu: np.zeros(nu.size), 1.0, 1.2) is None
-    assert thresholds.onset(lambda nu: np.ones(nu.size), 1.0, 1.2) is None
+    courses = heights(lambda nu: 1.0)
+    assert thresholds.onset(courses, spread, 1.0, 1.2) == pytest.approx(1.1234, abs=WIDTH)
+    assert thresholds.onset(courses, lambda nu: np.zeros(nu.size), 1.0, 1.2) is None
+    assert thresholds.onset(courses, lambda nu: np.ones(nu.size), 1.0, 1.2) is None
 
 
 def test_intervals_of_exceedance_begin_and_end_at_the_crossings_or_the_range():

@@ -3,18 +3,18 @@
 `locate` returns all of it for a set of parameters. It looks at the paper's range of nu_s whatever
 grid a study has: each observable is a function of `Courses`, the response of one variant against
 nu_s, run where it is asked for and remembered. A scan with the spacing `SCAN` brackets what is
-looked for, and `gearmesh.refinement` narrows the bracket to `WIDTH`. Lengths are in static
-deflections y_st.
+looked for, and `gearmesh.refinement` narrows the bracket to `WIDTH`; courses of another make may
+scan and narrow less closely. Lengths are in static deflections y_st.
 """
 
-from collections.abc import Callable, Collection, Iterable
+from collections.abc import Callable, Collection, Iterable, Mapping
 
 import numpy as np
 
 from gearmesh.damping import variant
 from gearmesh.integrator import simulate
 from gearmesh.parameters import Parameters
-from gearmesh.refinement import refine_change, refine_peak, refine_step
+from gearmesh.refinement import Batch, refine_change, refine_peak, refine_step
 from gearmesh.response import MAXIMUM, MINIMUM, Response
 
 FIRST, LAST = 0.6, 1.2
@@ -64,6 +64,9 @@ class Courses:
         Name of the variant, as ``c-lubricant``.
     """
 
+    width = WIDTH
+    """Interval of nu_s to which a bracket is narrowed."""
+
     def __init__(self, parameters: Parameters, name: str) -> None:
         self._parameters = parameters
         self._variant = variant(name)
@@ -92,6 +95,10 @@ class Courses:
             return np.array([measure(r) if r.status == "ok" else np.nan for r in self.at(nu)])
 
         return values
+
+    def scan(self, low: float, high: float) -> np.ndarray:
+        """Return the places of a first look between two tunings."""
+        return scan(low, high)
 
     def strobe_spread(self, response: Response) -> float:
         """How far the stroboscopic points kept in y and y' lie apart: 0 for a steady motion."""
@@ -134,8 +141,8 @@ def extremum_spread(kind: int) -> Measure:
         if not chosen.any():
             return 0.0
         periods = np.floor(response.extremum_time[chosen] / response.period)
-        heights = kind * response.extremum_y[chosen]
-        return float(np.ptp([heights[periods == period].max() for period in np.unique(periods)]))
+        first_of_each = np.flatnonzero(np.diff(periods, prepend=-1.0))
+        return float(np.ptp(np.maximum.reduceat(kind * response.extremum_y[chosen], first_of_each)))
 
     return spread
 
@@ -165,14 +172,14 @@ def jumps(courses: Courses, low: float, high: float) -> list[dict[str, float]]:
     list of dict
         ``nu`` and signed ``step`` of each, by ascending nu.
     """
-    places = scan(low, high)
+    places = courses.scan(low, high)
     y_max = courses.of(highest)
     steps = np.diff(y_max(places))
     found = []
     for i in np.flatnonzero(np.abs(steps) >= SMALLEST_JUMP):
         left, right, step = refine_step(y_max, places[i], places[i + 1], JUMP_WIDTH)
         if abs(step) > abs(steps[i]) / 3:
-            left, right, _ = refine_step(y_max, left, right, WIDTH)
+            left, right, _ = refine_step(y_max, left, right, courses.width)
             found.append({"nu": (left + right) / 2, "step": float(steps[i])})
     return found
 
@@ -186,7 +193,7 @@ def great_rises(found: list[dict[str, float]], low: float, high: float) -> list[
 
 def largest_step(courses: Courses, low: float, high: float) -> dict[str, float]:
     """Measure continuity: the greatest step of y_max that is left over an interval of `WIDTH`."""
-    places = scan(low, high)
+    places = courses.scan(low, high)
     y_max = courses.of(highest)
     steepest = np.argsort(np.nan_to_num(np.abs(np.diff(y_max(places)))))[-3:]
     pieces = [refine_step(y_max, places[i], places[i + 1], WIDTH) for i in steepest]
@@ -196,27 +203,27 @@ def largest_step(courses: Courses, low: float, high: float) -> dict[str, float]:
 
 def loop_end(courses: Courses, low: float, high: float) -> float | None:
     """Find where the loops end: the last place where four turning points a period become two."""
-    places = scan(low, high)
+    places = courses.scan(low, high)
     turning = courses.of(turning_points)
 
     def has_loops(nu: np.ndarray) -> np.ndarray:
         return turning(nu) > 3.0
 
     ends = np.flatnonzero(np.diff(has_loops(places).astype(int)) < 0)
-    return _changes(has_loops, places, ends[-1:])[0] if ends.size else None
+    return _changes(has_loops, places, ends[-1:], courses.width)[0] if ends.size else None
 
 
 def loop_place(courses: Courses, end: float, initial_phase: float) -> float:
     """Return the phase of the mesh period at which the last loop, just below its end, closes."""
-    response = courses.at([end - WIDTH])[0]
+    response = courses.at([end - courses.width])[0]
     closest = int(np.argmin(np.abs(np.diff(response.extremum_y))))
     time = response.extremum_time[closest : closest + 2].mean()
     return float((time / response.period + initial_phase) % 1.0)
 
 
-def onset(spread: Callable[[np.ndarray], np.ndarray], low: float, high: float) -> float | None:
-    """Find from where on a spread is visible up to `high`."""
-    places = scan(low, high)
+def onset(courses: Courses, spread: Batch, low: float, high: float) -> float | None:
+    """Find from where on a spread of the courses is visible up to `high`."""
+    places = courses.scan(low, high)
 
     def is_split(nu: np.ndarray) -> np.ndarray:
         return spread(nu) > VISIBLE_SPREAD
@@ -224,12 +231,12 @@ def onset(spread: Callable[[np.ndarray], np.ndarray], low: float, high: float) -
     single = np.flatnonzero(~is_split(places))
     if not single.size or single[-1] == places.size - 1:
         return None
-    return _changes(is_split, places, single[-1:])[0]
+    return _changes(is_split, places, single[-1:], courses.width)[0]
 
 
 def exceedance(more: Courses, less: Courses, low: float, high: float) -> list[list[float]]:
     """Find the intervals of nu_s where y_max of the first course lies above that of the second."""
-    places = scan(low, high)
+    places = more.scan(low, high)
     over, under = more.of(highest), less.of(highest)
 
     def exceeds(nu: np.ndarray) -> np.ndarray:
@@ -237,34 +244,34 @@ def exceedance(more: Courses, less: Courses, low: float, high: float) -> list[li
 
     above = exceeds(places)
     ends = [low] if above[0] else []
-    ends += _changes(exceeds, places, np.flatnonzero(above[1:] != above[:-1]))
+    ends += _changes(exceeds, places, np.flatnonzero(above[1:] != above[:-1]), more.width)
     ends += [high] if above[-1] else []
     return [list(pair) for pair in zip(ends[::2], ends[1::2], strict=True)]
 
 
-def _changes(holds: Callable, places: np.ndarray, left: Iterable[int]) -> list[float]:
+def _changes(holds: Batch, places: np.ndarray, left: Iterable[int], width: float) -> list[float]:
     """Refine the changes between the scanned places `left` and their right neighbours."""
-    return [float(np.mean(refine_change(holds, places[i], places[i + 1], WIDTH))) for i in left]
+    return [float(np.mean(refine_change(holds, places[i], places[i + 1], width))) for i in left]
 
 
 def peak(courses: Courses, low: float, high: float) -> dict[str, float]:
     """Locate the greatest y_max between two tunings."""
-    places = scan(low, high)
+    places = courses.scan(low, high)
     y_max = courses.of(highest)
     best = int(np.argmax(np.nan_to_num(y_max(places), nan=-np.inf)))
     around = places[max(best - 1, 0)], places[min(best + 1, places.size - 1)]
-    nu, height = refine_peak(y_max, *around, WIDTH)
+    nu, height = refine_peak(y_max, *around, courses.width)
     return {"nu": nu, "y_max": height}
 
 
 def largest_rise(courses: Courses, low: float, high: float) -> float:
     """Return by how much y_max grows at the most between neighbours of a scan: 0 if it falls."""
-    return float(np.nanmax(np.diff(courses.of(highest)(scan(low, high))), initial=0.0))
+    return float(np.nanmax(np.diff(courses.of(highest)(courses.scan(low, high))), initial=0.0))
 
 
 def relative_difference(one: Courses, other: Courses, low: float, high: float) -> float:
     """Return the greatest relative difference of y_max between two courses."""
-    places = scan(low, high)
+    places = one.scan(low, high)
     heights = one.of(highest)(places), other.of(highest)(places)
     return float(np.nanmax(np.abs(heights[0] - heights[1]) / heights[0]))
 
@@ -272,13 +279,14 @@ def relative_difference(one: Courses, other: Courses, low: float, high: float) -
 def loss_gained(courses: Courses, jump: float) -> float:
     """Return by how much the share of contact loss is greater above a jump than below it."""
     loss = courses.of(contact_loss)
-    below, above = scan(jump - 8 * SCAN, jump - SCAN), scan(jump + SCAN, jump + 8 * SCAN)
+    below = courses.scan(jump - 8 * SCAN, jump - SCAN)
+    above = courses.scan(jump + SCAN, jump + 8 * SCAN)
     return float(np.nanmedian(loss(above)) - np.nanmedian(loss(below)))
 
 
 def typical_spread(courses: Iterable[Courses], low: float, high: float) -> float:
     """Return how far courses of y_max lie apart, relative to their mean: the median over nu_s."""
-    heights = np.array([c.of(highest)(scan(low, high)) for c in courses])
+    heights = np.array([c.of(highest)(c.scan(low, high)) for c in courses])
     return float(np.nanmedian(np.ptp(heights, axis=0) / heights.mean(axis=0)))
 
 
@@ -299,7 +307,11 @@ def locate(parameters: Parameters, variants: Collection[str]) -> dict[str, dict[
         `results/datasets/thresholds.json` holds. Frequencies are nu_s, lengths in y_st. A
         threshold that does not exist is None; one whose variants are lacking is left out.
     """
-    known = {name: Courses(parameters, name) for name in sorted(variants)}
+    return locate_on({name: Courses(parameters, name) for name in sorted(variants)}, parameters)
+
+
+def locate_on(known: Mapping[str, Courses], parameters: Parameters) -> dict[str, dict[str, object]]:
+    """Locate every threshold that some courses, by the names of their variants, allow."""
     found: dict[str, dict[str, object]] = {}
 
     def note(observable: str, name: str, value: object) -> None:
@@ -355,16 +367,16 @@ def _of_lubricant(courses: Courses) -> dict[str, object]:
     maxima, minima = (courses.of(extremum_spread(kind)) for kind in (MAXIMUM, MINIMUM))
     summit = peak(courses, second or BETWEEN_JUMPS, LAST)
     strobes = courses.of(courses.strobe_spread)
-    split = onset(maxima, LAST_JUMP, LAST)
-    orderly = [nu for nu in scan(FIRST, 0.80) if abs(nu - 0.66) > 0.02]
+    split = onset(courses, maxima, LAST_JUMP, LAST)
+    orderly = [nu for nu in courses.scan(FIRST, 0.80) if abs(nu - 0.66) > 0.02]
     return {
         "first_jump": first,
         "second_jump": second,
         "peak": summit,
-        "lowest": _least(courses.of(lowest)(scan(FIRST, LAST))),
+        "lowest": _least(courses.of(lowest)(courses.scan(FIRST, LAST))),
         "onset_maxima": split,
-        "onset_minima": onset(minima, LAST_JUMP, LAST),
-        "onset_strobes": onset(strobes, LAST_JUMP, LAST),
+        "onset_minima": onset(courses, minima, LAST_JUMP, LAST),
+        "onset_strobes": onset(courses, strobes, LAST_JUMP, LAST),
         "largest_rise": largest_rise(courses, summit["nu"], split or LAST),
         "loss_gained": {
             "first": first and loss_gained(courses, first),
@@ -372,7 +384,7 @@ def _of_lubricant(courses: Courses) -> dict[str, object]:
         },
         "maxima_spread": {
             "below": float(np.nanmedian(maxima(orderly))),
-            "above": float(np.nanmedian(maxima(scan(1.1, LAST)))),
+            "above": float(np.nanmedian(maxima(courses.scan(1.1, LAST)))),
         },
         "strobe_spread": dict(
             zip((f"{nu:.2f}" for nu in STROBED_AT), strobes(STROBED_AT).tolist(), strict=True)
@@ -383,10 +395,10 @@ def _of_lubricant(courses: Courses) -> dict[str, object]:
 def _of_loops(courses: Courses, parameters: Parameters) -> dict[str, object]:
     """Return what Figs. 3 and 5 to 7 show of the loops of a course."""
     end = loop_end(courses, LOOPS_FROM, LAST)
-    turning = courses.of(turning_points)
+    turning, width = courses.of(turning_points), courses.width
     return {
         "loop_end": end,
         "loop_place": end and loop_place(courses, end, parameters.assumed.initial_phase),
-        "turning_points_before": end and _least(turning(scan(FIRST, end - WIDTH))),
-        "turning_points_beyond": end and -_least(-turning(scan(end + WIDTH, LAST))),
+        "turning_points_before": end and _least(turning(courses.scan(FIRST, end - width))),
+        "turning_points_beyond": end and -_least(-turning(courses.scan(end + width, LAST))),
     }
