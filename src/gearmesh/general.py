@@ -28,8 +28,9 @@ _STATUS = ("ok", "step_limit", "extremum_overflow", "not_finite")
 _EXTREMA_PER_PERIOD = 64
 _STEPS_PER_PERIOD = 2000
 
-# A step this long, in radians of the fastest oscillation, multiplies rounding errors by 50.
-_LONGEST_STEP = 4.0
+# In radians of the fastest oscillation. The series of an oscillation too small for the error
+# control (an unexcited mode) still have to converge, else it grows from rounding.
+_LONGEST_STEP = 2.0
 
 
 def integrate(
