@@ -4,6 +4,7 @@ from pathlib import Path
 
 import pytest
 from hypothesis import settings
+from small_run import compute
 
 from gearmesh.configuration import Study, load_study
 from gearmesh.parameters import Parameters
@@ -28,3 +29,16 @@ def study() -> Study:
 @pytest.fixture(scope="session")
 def parameters(study: Study) -> Parameters:
     return study.parameters
+
+
+@pytest.fixture(scope="session")
+def small_study() -> Study:
+    return load_study(ROOT / "config" / "smoke.yaml")
+
+
+@pytest.fixture(scope="session")
+def small_run(small_study: Study, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Return a root below which the results of the smoke study stand."""
+    root = tmp_path_factory.mktemp("small-run")
+    compute(small_study, root)
+    return root

@@ -95,8 +95,6 @@ def _target(target: Any, tolerance: float | None) -> str:
         if low is None:
             return f"≤ {number(high)}"
         return f"≥ {number(low)}" if high is None else f"{number(low)} to {number(high)}"
-    if isinstance(target, bool):
-        return _line(target)
     return f"{number(target)} ± {number(tolerance)}" if tolerance else number(target)
 
 

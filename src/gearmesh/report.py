@@ -199,7 +199,7 @@ def _computation(study: Study, resonance: xr.Dataset) -> Iterable[tuple[str, str
 def _statuses(resonance: xr.Dataset) -> str:
     counts = Counter(int(flag) for flag in resonance["status"].values.flat)
     named = [f"{counts[flag]} {name}" for flag, name in enumerate(STATUSES) if counts[flag]]
-    return ", ".join(named)
+    return ", ".join(named).replace("_", " ")
 
 
 def _sensitivity(resonance: xr.Dataset) -> Iterable[tuple[str, int, int, float]]:

@@ -1,0 +1,31 @@
+"""The smoke study, computed without the pipeline: what figures, notebooks and report read."""
+
+from pathlib import Path
+
+from gearmesh import batches, casefile, datasets, paths
+from gearmesh.configuration import Study
+from gearmesh.integrator import simulate
+
+
+def compute(study: Study, root: Path) -> None:
+    """Write the datasets of `study` and its cases with time courses below `root`."""
+    parameters = study.parameters
+    (batch,) = batches.partition(study.cases(), len(study.cases()))
+    records = {}
+    for with_course, samples in ((False, 0), (True, parameters.run.samples_per_period)):
+        cases = [case for case in batch.cases if case.time_course == with_course]
+        problems = [parameters.problem(case.variant, case.nu) for case in cases]
+        responses = simulate(problems, parameters.solver.tolerance, samples)
+        for case, response in zip(cases, responses, strict=True):
+            records[case] = casefile.record(response, parameters)
+    for case in (case for case in batch.cases if case.time_course):
+        casefile.write_case(
+            root / paths.case_file(case.variant.name, case.nu),
+            casefile.attributes(parameters, case),
+            records[case],
+        )
+    stored = root / paths.batch_file(batch.name)
+    ordered = [records[case] for case in batch.cases]
+    batches.write_batch(stored, batches.attributes(parameters, batch), batch, ordered)
+    datasets.write_datasets(study, [stored], root / paths.RESONANCE, root / paths.BIFURCATION)
+    (root / paths.THRESHOLDS).write_text("{}\n")
