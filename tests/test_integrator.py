@@ -99,8 +99,9 @@ def test_a_run_goes_on_where_another_ended():
     long = simulate([problem(0.9, revolutions=2)])[0]
     first = simulate([problem(0.9, revolutions=1)])[0]
     second = simulate([problem(0.9, revolutions=1, initial_state=first.final_state)])[0]
-    np.testing.assert_array_equal(second.strobe_y[1:], long.strobe_y[22:])
-    np.testing.assert_array_equal(second.extremum_y, long.extremum_y)
+    # Not bit for bit: turning points end a step where they are kept, and only there.
+    np.testing.assert_allclose(second.strobe_y[1:], long.strobe_y[22:], atol=1e-10)
+    np.testing.assert_allclose(second.extremum_y, long.extremum_y, atol=1e-10)
 
 
 def test_runs_of_different_lengths_share_a_batch():

@@ -1,13 +1,17 @@
 """The first event of a step: a turning point of y, or the level that ends the regime.
 
-Both are found on the Taylor polynomials of a step, in all lanes at once. Turning points come
-first: up to the first one y is monotone, so it crosses a level at most once and end values decide
-whether it does. That makes the search for contact loss complete: an orbit that dips through
-y = 0 and returns within a step (grazing) has its turning point below 0.
+Both are found on the Taylor polynomials of a step, in all lanes at once. Each lane watches one
+function for its first change of sign:
 
-A turning point is a change of sign of v. It is sampled at `N_SAMPLES` places; between two of
-them a pair of changes could hide, only where |v| has a minimum there. The two
-tangents bound that minimum from below, and where they fall through 0 it is computed.
+- y itself, measured from the level where the flanks part, while they touch, turning points do not
+  count (before the kept revolutions) and do not bend the damping (no |v| v);
+- v otherwise. Up to the first turning point y is monotone, so it crosses a level at most once and
+  its end tells whether it does.
+
+Either way an orbit that dips through y = 0 and returns within a step (grazing) is seen. What is
+watched is sampled at `N_SAMPLES` places; between two of them a pair of changes of sign can hide
+only where it has a minimum. The two tangents bound that minimum from below, and where they meet
+below 0 it is computed.
 """
 
 from numba import njit
@@ -18,7 +22,7 @@ from gearmesh.taylor import (
     REST,
     SIGN,
     STEP,
-    V,
+    WATCHED,
     Y,
     evaluate,
     evaluate_with_bend,
@@ -46,12 +50,12 @@ def _halley(at, value, slope, bend):
 
 @njit(inline="always")
 def _dip(like, work, sign, suspect, low, high):
-    """Return the minimum of sign v between `low` and `high`, and its place."""
+    """Return the minimum of what is watched between `low` and `high`, and its place."""
     zero = spread(like, 0.0)
     at = 0.5 * (low + high)
     active = suspect
     for _ in range(_MOST_ITERATIONS):
-        _, slope, bend = evaluate_with_bend(like, work, V, ORDER, at)
+        _, slope, bend = evaluate_with_bend(like, work, WATCHED, ORDER + 1, at)
         falling = sign * slope < zero
         low = select(falling, at, low)
         high = select(falling, high, at)
@@ -63,15 +67,14 @@ def _dip(like, work, sign, suspect, low, high):
         active = active & ~settled
         if not any_lane(active):
             break
-    value = evaluate(like, work, V, ORDER, at)
+    value = evaluate(like, work, WATCHED, ORDER + 1, at)
     return sign * value, at
 
 
 @njit(inline="never")
-def bracket_turning(like, work):
-    """Return whether y turns within the step, a bracket (low, high) of the first place, a guess."""
+def bracket(like, work, sign):
+    """Return whether sign times what is watched falls through 0, a bracket of where, a guess."""
     zero = spread(like, 0.0)
-    sign = load(like, work, SIGN)
     step = load(like, work, STEP)
     low = zero
     high = step
@@ -79,14 +82,14 @@ def bracket_turning(like, work):
     low_value = zero
     high_value = zero
     found = zero > zero
-    before = sign * load(like, work, V)
-    slope_before = sign * load(like, work, V + 1)
+    before = sign * load(like, work, WATCHED)
+    slope_before = sign * load(like, work, WATCHED + 1)
     place_before = zero
     rest = spread(like, REST)
     width = step * (1.0 / N_SAMPLES)
     for j in range(1, N_SAMPLES + 1):
         place = width * float(j)
-        value, slope = evaluate_with_slope(like, work, V, ORDER, place)
+        value, slope = evaluate_with_slope(like, work, WATCHED, ORDER + 1, place)
         value = sign * value
         slope = sign * slope
         dips = (slope_before < zero) & (slope > zero) & (value >= zero) & ~found
@@ -102,29 +105,28 @@ def bracket_turning(like, work):
                 low_value = select(suspect, before, low_value)
                 high_value = select(suspect, lowest, high_value)
                 found = found | suspect
-        turns = (value < -rest) & ~found
-        low = select(turns, place_before, low)
-        high = select(turns, place, high)
-        low_value = select(turns, before, low_value)
-        high_value = select(turns, value, high_value)
-        found = found | turns
+        falls = (value < -rest) & ~found
+        low = select(falls, place_before, low)
+        high = select(falls, place, high)
+        low_value = select(falls, before, low_value)
+        high_value = select(falls, value, high_value)
+        found = found | falls
         before = value
         slope_before = slope
         place_before = place
     guess = low + (high - low) * (low_value / (low_value - high_value))
-    # A step that begins at a turning point must not find that point again.
+    # A step that begins at an event must not find that event again.
     guess = select(low_value <= rest, high, guess)
     return found, low, high, guess
 
 
 @njit(inline="never")
-def turning_point(like, work, wanted, low, high, at):
-    """Return where v changes sign between `low` and `high`: Halley's method from `at`."""
+def fall(like, work, sign, wanted, low, high, at):
+    """Return where what is watched passes 0 between `low` and `high`: Halley's method from `at`."""
     zero = spread(like, 0.0)
-    sign = load(like, work, SIGN)
     active = wanted
     for _ in range(_MOST_ITERATIONS):
-        value, slope, bend = evaluate_with_bend(like, work, V, ORDER, at)
+        value, slope, bend = evaluate_with_bend(like, work, WATCHED, ORDER + 1, at)
         forward = sign * value > zero
         low = select(active & forward, at, low)
         high = select(active & ~forward, at, high)

@@ -335,6 +335,12 @@ class _Traced:
     def __neg__(self):
         return _Traced(self.builder, self.builder.fneg(self.value))
 
+    def choose(self, one, other):
+        """Return `one` where self is not 0, else `other`."""
+        mask = self.builder.fcmp_unordered("!=", self.value, self._operand(0.0))
+        chosen = self.builder.select(mask, self._operand(one), self._operand(other))
+        return _Traced(self.builder, chosen)
+
     def times_plus(self, factor, summand):
         """Return self factor + summand with one rounding."""
         operands = (self.value, self._operand(factor), self._operand(summand))

@@ -9,7 +9,7 @@ stop is told lane by lane here.
 import numpy as np
 from numba import njit
 
-from gearmesh.events import bracket_turning, crossing, turning_point
+from gearmesh.events import bracket, crossing, fall
 from gearmesh.lanes import (
     any_lane,
     fma,
@@ -32,6 +32,8 @@ from gearmesh.taylor import (
     ELASTIC,
     EVENT,
     FRICTION,
+    GUARD,
+    GUARDED,
     INVERSE,
     INVERSE_TIME,
     KEPT,
@@ -176,6 +178,10 @@ def _enter_regime(work, width, lane, run, place):
         above = -run.backlash
     _set(work, width, LEVEL_ABOVE, lane, above)
     _set(work, width, LEVEL_BELOW, lane, below)
+    # Turning points matter where they are kept, and where |v| v bends the damping.
+    watches_v = lost or law[1] != 0.0 or _get(work, width, KEPT, lane) != 0.0
+    _set(work, width, GUARD, lane, 0.0 if watches_v else float(place.regime))
+    _set(work, width, GUARDED, lane, above if place.regime == INVERSE_MESH else 0.0)
 
 
 @njit
@@ -242,6 +248,8 @@ def _idle(work, width, lane, places):
 def _cross(work, width, lane, run, place, summary):
     """Change the regime and put y on the level exactly."""
     rising = _get(work, width, SIGN, lane) > 0.0
+    if place.regime != CONTACT_LOSS:
+        rising = place.regime == INVERSE_MESH
     level = _get(work, width, LEVEL_ABOVE if rising else LEVEL_BELOW, lane)
     _set(work, width, U, lane, level - _get(work, width, B, lane))
     if place.regime == CONTACT_LOSS:
@@ -267,6 +275,8 @@ def _next_segment(work, width, lane, run, place, summary, strobes):
         _set(work, width, SINCE_BOUNDARY, lane, 0.0)
         if place.period == run.first_kept:
             _set(work, width, KEPT, lane, 1.0)
+            # Before, directions were not followed: no extremum is to be seen in a change here.
+            _set(work, width, SIGN, lane, 0.0)
             _take_value(summary, y)
         if place.period == run.periods:
             _take_value(summary, y)
@@ -341,17 +351,21 @@ def _find_event(like, work):
     """Write how far the step goes, up to its first event, and what that event is."""
     zero = spread(like, 0.0)
     step = load(like, work, STEP)
+    sign = load(like, work, SIGN)
+    guard = load(like, work, GUARD)
+    guards = ~(guard == zero)
     end = step
-    found, low, high, guess = bracket_turning(like, work)
+    falling = select(guards, guard, sign)
+    found, low, high, guess = bracket(like, work, falling)
     if any_lane(found):
-        end = select(found, turning_point(like, work, found, low, high, guess), step)
+        end = select(found, fall(like, work, falling, found, low, high, guess), step)
     stopped = step >= load(like, work, REMAINING)
     event = select(stopped, spread(like, _STOPPED), spread(like, _PASSED))
-    event = select(found, spread(like, _TURNED), event)
-    sign = load(like, work, SIGN)
+    fallen = select(guards, spread(like, _CROSSED), spread(like, _TURNED))
+    event = select(found, fallen, event)
     level = select(sign > zero, load(like, work, LEVEL_ABOVE), load(like, work, LEVEL_BELOW))
     last = evaluate(like, work, Y, ORDER + 1, end)
-    crossed = sign * (last - level) > zero
+    crossed = (sign * (last - level) > zero) & ~guards
     if any_lane(crossed):
         end = select(crossed, crossing(like, work, level, crossed, end), end)
         event = select(crossed, spread(like, _CROSSED), event)

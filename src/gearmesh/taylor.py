@@ -34,10 +34,11 @@ ORDER = 16
 """Degree of the Taylor polynomials."""
 
 _SPAN = ORDER + 1
-U, B, Y, V = (_SPAN * i for i in range(4))
-"""First rows of the series of u, b, y and v; the state is U, U + 1, B, B + 1."""
+U, B, Y, V, WATCHED = (_SPAN * i for i in range(5))
+"""First rows of the series of u, b, y, v and of what is watched for events; the state is U, U + 1,
+B, B + 1."""
 
-_FIRST = 4 * _SPAN
+_FIRST = 5 * _SPAN
 (
     ELASTIC,  # c, 0 in contact loss
     OFFSET,  # y_0
@@ -51,6 +52,8 @@ _FIRST = 4 * _SPAN
     BEARING_DAMPING,  # 2 zeta w
     LEVEL_ABOVE,  # level that a rising y crosses into the next regime
     LEVEL_BELOW,  # level that a falling y crosses
+    GUARD,  # 1 or -1: watch y, which must stay above or below GUARDED; 0: watch v
+    GUARDED,  # level that ends the contact
     REMAINING,  # time to the next switch, pitch point or boundary
     LOG_TOLERANCE,  # log2 of the local error tolerance
     SIGN,  # direction of motion, sign of v
@@ -69,7 +72,7 @@ _FIRST = 4 * _SPAN
     STEPS,  # steps taken
     MOST_STEPS,  # steps after which the run is given up
     SCRATCH,  # three rows
-) = range(_FIRST, _FIRST + 30)
+) = range(_FIRST, _FIRST + 32)
 N_ROWS = SCRATCH + 3
 
 REST = 1e-14
@@ -122,7 +125,7 @@ def _square(series, k):
 
 
 def _expand(rows, powers):
-    """Write the series of u, b, y and v from the state, with damping of the given powers."""
+    """Write the series from the state, with damping of the given powers."""
     y, v, square = [rows[U] + rows[B]], [rows[U + 1] + rows[B + 1]], []
     b = [rows[B], rows[B + 1]]
     y.append(v[0])
@@ -152,8 +155,9 @@ def _expand(rows, powers):
         rows[Y + k] = y[k]
         rows[B + k] = b[k]
         rows[U + k] = y[k] - b[k]
-    for k in range(ORDER):
-        rows[V + k] = v[k]
+    for k in range(ORDER + 1):
+        height = y[k] - rows[GUARDED] if k == 0 else y[k]
+        rows[WATCHED + k] = rows[GUARD].choose(height, v[k] if k < ORDER else 0.0)
 
 
 _expand_linear = unrolled(lambda rows: _expand(rows, 1))
@@ -163,7 +167,7 @@ _expand_cubic = unrolled(lambda rows: _expand(rows, 3))
 
 @njit(inline="never")
 def expand(like, work, powers):
-    """Fill the series of u, b, y and v from the state; `powers` of v that act in some lane."""
+    """Fill the series from the state; `powers` of v that act in some lane."""
     if powers == 1:
         _expand_linear(like, work)
     elif powers == 2:
