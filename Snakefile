@@ -26,15 +26,18 @@ except InputError as error:
 PYTHON, STUDY = pipeline.python(), str(PLAN.config)
 
 
+report: "workflow/report/workflow.rst"
+
+
 rule all:
     input:
-        PLAN.case_files(PLAN.cases),
+        PLAN.computed,
         paths.VERDICT,
 
 
 rule data:
     input:
-        PLAN.case_files(PLAN.cases),
+        PLAN.computed,
         paths.RESONANCE,
         paths.BIFURCATION,
 

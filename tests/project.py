@@ -54,11 +54,26 @@ class Project:
             elif source.exists():
                 shutil.copy2(source, folder / name)
         (folder / "config" / "tiny.yaml").write_text(TINY)
+        (folder / "README.md").touch()
         return cls(folder, config)
 
-    def copy(self, folder: Path) -> "Project":
-        """Copy a project with its results and with what Snakemake knows of them."""
-        shutil.copytree(self.folder, folder, symlinks=True)
+    def copy(self, folder: Path, linked: bool = False) -> "Project":
+        """Copy a project with its results and with what Snakemake knows of them.
+
+        Parameters
+        ----------
+        folder : Path
+            Where the copy is made.
+        linked : bool
+            Share the results with it: quicker, for tests that only plan.
+        """
+        for source in self.folder.iterdir():
+            shared = linked and source.name in ("results", ".snakemake")
+            if source.is_dir():
+                how = os.link if shared else shutil.copy2
+                shutil.copytree(source, folder / source.name, copy_function=how)
+            else:
+                shutil.copy2(source, folder / source.name)
         return Project(folder, self.config)
 
     def command(self, *arguments: str, cores: int = 2) -> list[str]:
@@ -132,7 +147,8 @@ class Project:
         return {
             str(path.relative_to(results)): hashlib.sha256(path.read_bytes()).hexdigest()
             for path in sorted(results.rglob("*"))
-            if path.is_file() and not any(p.startswith(".") for p in path.relative_to(results).parts)
+            if path.is_file()
+            and not any(p.startswith(".") for p in path.relative_to(results).parts)
         }
 
 

@@ -1,12 +1,11 @@
 """The pipeline on the small study: what it leaves, and what an edit reruns."""
 
-import json
-import shutil
 from pathlib import Path
 
 import pytest
 import xarray as xr
-from project import ROOT, Project
+import yaml
+from project import Project
 
 FIGURES = [f"fig{number}" for number in range(2, 8)]
 SMOKE = "config/smoke.yaml"
@@ -22,8 +21,8 @@ def smoke(tmp_path_factory) -> Project:
 
 @pytest.fixture
 def edited(smoke: Project, tmp_path: Path) -> Project:
-    """A copy of it to edit."""
-    return smoke.copy(tmp_path / "project")
+    """A copy of it whose sources are edited."""
+    return smoke.copy(tmp_path / "project", linked=True)
 
 
 def test_everything_that_the_contract_lists_is_there(smoke):
@@ -80,22 +79,25 @@ CASES = {"cases_0"}
 AFTER_CASES = {"datasets", *FIGURES, *END}
 EVERYTHING = {*CASES, "thresholds", "printed", *AFTER_CASES}
 
+AFTER_THRESHOLDS = {"thresholds", "printed", *FIGURES, *END}
+NEW_CASES = {*CASES, *AFTER_CASES}
+
 INCREMENTS = {
     "README": ("README.md", "", "more\n", set()),
     "plot": ("src/gearmesh/figures/fig2.py", '"""Fig. 2', '"""Figure 2', {"fig2", *END}),
     "notebook": ("notebooks/fig3.ipynb", "## What is seen", "## Seen", {"fig3", *END}),
     "check": ("src/gearmesh/claims/fig5.py", '"""', '"""About it: ', {"fig5", *END}),
     "caption": ("workflow/report/fig4.rst", "", "More. ", {"report"}),
-    "thresholds": ("src/gearmesh/thresholds.py", '"""', '""" ', {"thresholds", "printed", *FIGURES, *END}),
+    "thresholds": ("src/gearmesh/thresholds.py", '"""', '""" ', AFTER_THRESHOLDS),
     "datasets": ("src/gearmesh/datasets.py", '"""', '""" ', {*AFTER_CASES}),
     "physics": ("src/gearmesh/friction.py", '"""', '""" ', EVERYTHING),
     "solver": ("src/gearmesh/integrator.py", '"""', '""" ', EVERYTHING),
     "tolerance": ("config/paper.yaml", "tolerance: 1e-10", "tolerance: 1e-9", EVERYTHING),
     "parameter": ("config/paper.yaml", "backlash: 40 um", "backlash: 41 um", EVERYTHING),
-    "units": ("config/paper.yaml", "backlash: 40 um", "backlash: 0.040 mm", {"report"}),
+    "units": ("config/paper.yaml", "backlash: 40 um", "backlash: 0.040 mm", set()),
     "reason": ("config/paper.yaml", "reasons: # one", "reasons: # just one", set()),
-    "step": ("config/smoke.yaml", "nu: {step: 0.05}", "nu: {step: 0.1}", EVERYTHING - {"printed"}),
-    "range": ("config/smoke.yaml", "nu: {step: 0.05}", "nu: {step: 0.05, stop: 1.3}", EVERYTHING - {"printed"}),
+    "step": ("config/smoke.yaml", "nu: {step: 0.05}", "nu: {step: 0.1}", NEW_CASES),
+    "range": ("config/smoke.yaml", "nu: {step: 0.05}", "nu: {step: 0.05, stop: 1.3}", NEW_CASES),
 }  # fmt: skip
 
 
@@ -104,3 +106,11 @@ def test_an_edit_reruns_its_consequences_only(edited, row):
     name, old, new, expected = INCREMENTS[row]
     edited.edit(name, old, new)
     assert edited.plan("all") - {"verdict", "all"} == expected
+
+
+def test_the_tolerance_of_a_claim_reruns_its_check(edited):
+    ledger = yaml.safe_load(edited.path("config/claims.yaml").read_text(encoding="utf-8"))
+    assert ledger["F3.1"]["figure"] == "fig3"
+    ledger["F3.1"]["tolerance"] = 0.051
+    edited.path("config/claims.yaml").write_text(yaml.safe_dump(ledger, sort_keys=False))
+    assert edited.plan("all") - {"verdict", "all"} == {"fig3", *END}

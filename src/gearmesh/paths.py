@@ -27,6 +27,9 @@ FIGURE_NAMES = tuple(f"fig{number}" for number in range(1, 8))
 
 NOTEBOOK_NAMES = FIGURE_NAMES[1:]
 
+CHECKED = ("printed", *NOTEBOOK_NAMES)
+"""What claims are checked by: bare numbers, and each notebook."""
+
 
 def nu_label(nu: float) -> str:
     """Write a frequency for a file name: 4 decimals, more only where this one needs them.

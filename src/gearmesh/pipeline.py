@@ -86,6 +86,15 @@ class Plan:
         """Return what a batch depends on besides the recipe: which cases are in it."""
         return _digest([(c.variant.name, c.nu, c.time_course) for c in batch.cases])
 
+    @cached_property
+    def computed(self) -> list[str]:
+        """All case files and batch files."""
+        return self.case_files(self.cases) + [self.batch_file(batch) for batch in self.batches]
+
+    def batch_file(self, batch: Batch) -> str:
+        """Return the file of a batch."""
+        return str(paths.batch_file(batch.name))
+
     def drop_damaged(self, only_tell: bool) -> None:
         """Delete files that are not as they were written, so that they are made again.
 
@@ -94,10 +103,7 @@ class Plan:
         only_tell : bool
             Name them, but let them be.
         """
-        sealed = [self.case_file(case) for case in self.cases if self.has_file(case)]
-        sealed += [str(paths.batch_file(batch.name)) for batch in self.batches]
-        sealed += [str(paths.RESONANCE), str(paths.BIFURCATION)]
-        for path in map(Path, sealed):
+        for path in map(Path, [*self.computed, paths.RESONANCE, paths.BIFURCATION]):
             if path.exists() and not casefile.is_whole(path):
                 tell(f"{path}: damaged, to be made again")
                 if not only_tell:
@@ -140,12 +146,13 @@ def sources(*files: str) -> list[str]:
     return [_relative(file) for file in found]
 
 
-def notebook_sources(figure: str, runner: str) -> list[str]:
-    """Return what the notebook of a figure is run by, without the checks of other figures."""
-    others = {name for name in ("printed", *paths.NOTEBOOK_NAMES) if name != figure}
-    foreign = {f"claims/{name}.py" for name in others}
-    found = sources(str(paths.notebook(figure)), runner)[1:]
-    return [file for file in found if "/".join(Path(file).parts[-2:]) not in foreign]
+def checked_by(figure: str, *files: str) -> list[str]:
+    """Return files that check the claims of a figure, and what they import of it.
+
+    `gearmesh.claims` imports the checks of all figures; a figure depends on its own.
+    """
+    others = {f"claims/{name}.py" for name in paths.CHECKED if name != figure}
+    return [file for file in sources(*files) if "/".join(Path(file).parts[-2:]) not in others]
 
 
 def claims_digest(figure: str) -> str:
@@ -156,8 +163,9 @@ def claims_digest(figure: str) -> str:
     """
     text = paths.CLAIMS.read_text(encoding="utf-8")
     try:
-        claims = [claim for claim in yaml.safe_load(text) if claim["figure"] == figure]
-    except (yaml.YAMLError, TypeError, KeyError):
+        listed = yaml.safe_load(text).items()
+        claims = [(name, claim) for name, claim in listed if claim["figure"] == figure]
+    except (yaml.YAMLError, AttributeError, TypeError, KeyError):
         claims = text
     return _digest(claims)
 

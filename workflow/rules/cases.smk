@@ -10,7 +10,7 @@ for batch in PLAN.batches:
             pipeline.sources(COMPUTE),
         output:
             update(PLAN.case_files(batch.cases)),
-            batch=str(paths.batch_file(batch.name)),
+            batch=PLAN.batch_file(batch),
         resources:
             mem_mb=1000,
             runtime=30,

@@ -6,7 +6,7 @@ VERDICT = pipeline.script("give_verdict")
 
 rule printed:
     input:
-        pipeline.sources(PRINTED),
+        pipeline.checked_by("printed", PRINTED),
     output:
         paths.check_file("printed"),
     params:
@@ -20,9 +20,9 @@ rule ledger:
     input:
         sources=pipeline.sources(COLLECT),
         ledger=paths.CLAIMS,
-        checks=[paths.check_file(name) for name in ("printed", *paths.NOTEBOOK_NAMES)],
+        checks=[paths.check_file(name) for name in paths.CHECKED],
     output:
-        paths.LEDGER,
+        report(paths.LEDGER, caption="../report/claims.rst", category="Claims"),
     shell:
         "{PYTHON} {COLLECT} {input.checks}"
 

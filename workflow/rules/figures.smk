@@ -45,7 +45,7 @@ for figure in paths.NOTEBOOK_NAMES:
             figure
         input:
             LOOKS,
-            sources=pipeline.notebook_sources(figure, NOTEBOOK),
+            sources=pipeline.checked_by(figure, NOTEBOOK, str(paths.notebook(figure))),
             notebook=paths.notebook(figure),
             resonance=paths.RESONANCE,
             bifurcation=paths.BIFURCATION,

@@ -1,0 +1,185 @@
+"""What is pulled out under a run: afterwards a rerun ends with the same bytes, or says what to do.
+
+Real runs of real processes, on a tiny study.
+"""
+
+import contextlib
+import os
+import random
+import shutil
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+from project import Project, end
+
+KILLS = 10
+
+
+@pytest.fixture(scope="module")
+def tiny(tmp_path_factory) -> Project:
+    """A tiny study with its cases and datasets, undisturbed."""
+    project = Project.create(tmp_path_factory.mktemp("tiny") / "project", "config/tiny.yaml")
+    start = time.monotonic()
+    finished = project.run("data")
+    project.seconds = time.monotonic() - start
+    assert finished.returncode == 0, finished.stdout
+    return project
+
+
+@pytest.fixture
+def fresh(tiny: Project, tmp_path: Path) -> Project:
+    """The same without results; what is compiled is there."""
+    project = tiny.copy(tmp_path / "project")
+    shutil.rmtree(project.path("results"))
+    shutil.rmtree(project.path(".snakemake"))
+    return project
+
+
+def heals(project: Project, undisturbed: Project) -> bool:
+    """Run again; tells whether all ends as if nothing had happened."""
+    finished = project.run("data")
+    assert finished.returncode == 0, finished.stdout
+    return project.results() == undisturbed.results()
+
+
+@contextlib.contextmanager
+def mounted(folder: Path, options: str):
+    """Mount a small file system, where this machine lets us."""
+    folder.mkdir(exist_ok=True)
+    command = ["mount", "-t", "tmpfs", "-o", options, "tmpfs", str(folder)]
+    if os.geteuid() or shutil.which("mount") is None:
+        pytest.skip("mounting a file system needs root")
+    if subprocess.run(command, capture_output=True, check=False).returncode:
+        pytest.skip("this machine does not let us mount a file system")
+    try:
+        yield
+    finally:
+        subprocess.run(["umount", "--lazy", str(folder)], check=False)
+
+
+def workers(project: Project) -> list[int]:
+    """Return the processes that compute cases for this project."""
+    found = []
+    for process in Path("/proc").glob("[0-9]*"):
+        with contextlib.suppress(OSError):
+            words = (process / "cmdline").read_bytes().split(b"\0")
+            if Path(os.readlink(process / "cwd")) == project.folder and any(
+                word.endswith(b"compute_cases.py") for word in words[1:2]
+            ):
+                found.append(int(process.name))
+    return found
+
+
+def wait_for(condition, process: subprocess.Popen) -> object:
+    """Wait until something is there, or the run is over."""
+    while process.poll() is None:
+        if found := condition():
+            return found
+        time.sleep(0.005)
+    return condition()
+
+
+@pytest.mark.parametrize("seed", range(KILLS))
+def test_a_killed_run_heals(tiny, fresh, seed):
+    """kill -9 at a random moment: of everything, or of Snakemake alone, whose jobs live on."""
+    chance = random.Random(seed)
+    process = fresh.start("data")
+    time.sleep(chance.uniform(0.1, 1.0) * tiny.seconds)
+    if seed % 2:
+        end(process, signal.SIGKILL)
+    else:
+        process.kill()
+        process.stdout.close()
+        process.wait()
+    assert heals(fresh, tiny)
+
+
+def test_a_killed_worker_heals(tiny, fresh):
+    process = fresh.start("data")
+    if found := wait_for(lambda: workers(fresh), process):
+        os.kill(found[0], signal.SIGKILL)
+    process.communicate()
+    assert process.returncode != 0
+    assert heals(fresh, tiny)
+
+
+def test_an_interrupted_run_heals(tiny, fresh):
+    process = fresh.start("data")
+    wait_for(lambda: workers(fresh), process)
+    end(process, signal.SIGINT)
+    assert process.returncode != 0
+    assert heals(fresh, tiny)
+
+
+def test_a_full_disk_is_told_and_heals(tiny, fresh):
+    results = fresh.path("results")
+    with mounted(results, "size=200k"):
+        finished = fresh.run("data")
+        assert finished.returncode != 0
+        assert "the disk is full; free some space and run again" in finished.stdout
+        subprocess.run(["mount", "-o", "remount,size=50m", str(results)], check=True)
+        assert heals(fresh, tiny)
+
+
+def test_results_that_cannot_be_written_are_told(fresh):
+    with mounted(fresh.path("results"), "size=1m,ro"):
+        finished = fresh.run("data")
+        assert finished.returncode != 0
+        assert "results: cannot be written" in finished.stdout
+
+
+def test_two_runs_at_once_do_not_disturb_each_other(tiny, fresh):
+    first = fresh.start("data")
+    wait_for(fresh.path("results/.journal").exists, first)
+    second = fresh.run("data")
+    told, _ = first.communicate()
+    assert first.returncode == 0, told
+    if second.returncode:  # it came while the first was at work
+        assert "another run is at work here; wait for its end, or stop it" in second.stdout
+    assert fresh.results() == tiny.results()
+
+
+def test_an_unwritable_compilation_cache_changes_nothing(tiny, fresh, tmp_path):
+    """Neither the folder of the sources nor the one of the user can hold compiled code."""
+    for folder in fresh.path("src").rglob("__pycache__"):
+        shutil.rmtree(folder)
+        folder.write_text("no folder")
+    blocked = tmp_path / "blocked"
+    blocked.write_text("no folder")
+    fresh.environment |= {"HOME": str(blocked), "XDG_CACHE_HOME": str(blocked)}
+    fresh.environment["PYTHONDONTWRITEBYTECODE"] = "1"
+    fresh.edit("config/tiny.yaml", "cases_per_job: 4", "cases_per_job: 100")
+    finished = fresh.run("data")
+    assert finished.returncode == 0, finished.stdout
+    results = {n: d for n, d in fresh.results().items() if not n.startswith("batches/")}
+    assert results.items() <= tiny.results().items()
+
+
+def test_a_kernel_that_dies_leaves_the_notebook_and_is_told(fresh):
+    notebook = fresh.path("notebooks/fig2.ipynb")
+    notebook.write_text(
+        notebook.read_text(encoding="utf-8").replace(
+            "from gearmesh.claims import",
+            "import os; os.kill(os.getpid(), 9)\\nfrom gearmesh.claims import",
+            1,
+        ),
+        encoding="utf-8",
+    )
+    executed = fresh.path("results/notebooks/fig2.ipynb")
+    command = [sys.executable, "workflow/scripts/run_notebook.py", notebook, executed]
+    finished = subprocess.run(
+        command,
+        cwd=fresh.folder,
+        env=fresh.environment,
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert finished.returncode == 1
+    assert "died" in finished.stderr
+    assert "run again" in finished.stderr
+    assert executed.exists()

@@ -1,0 +1,138 @@
+"""Cases and datasets of a tiny study: what is kept, what is computed, and always the same bytes."""
+
+import os
+import re
+from pathlib import Path
+
+import pytest
+from project import Project
+
+CASE = "results/cases/c-lubricant/nu-0.8000.nc"
+DATASET = "results/datasets/bifurcation.nc"
+
+
+@pytest.fixture(scope="session")
+def tiny(tmp_path_factory) -> Project:
+    """A study of 14 cases with its datasets."""
+    project = Project.create(tmp_path_factory.mktemp("tiny") / "project", "config/tiny.yaml")
+    finished = project.run("data")
+    assert finished.returncode == 0, finished.stdout
+    return project
+
+
+@pytest.fixture
+def copied(tiny: Project, tmp_path: Path) -> Project:
+    return tiny.copy(tmp_path / "project")
+
+
+def counts(project: Project) -> tuple[int, int]:
+    """Run, and return how many cases were computed and kept; (0, 0) if no job looked at them."""
+    finished = project.run("data")
+    assert finished.returncode == 0, finished.stdout
+    told = re.search(r"cases: (\d+) computed, (\d+) kept", finished.stdout)
+    return (int(told[1]), int(told[2])) if told else (0, 0)
+
+
+def cut_short(path: Path) -> None:
+    path.write_bytes(path.read_bytes()[:5000])
+
+
+def alter_a_byte(path: Path) -> None:
+    content = bytearray(path.read_bytes())
+    content[len(content) // 2] ^= 1
+    path.write_bytes(content)
+
+
+def alter_secretly(path: Path) -> None:
+    times = path.stat()
+    alter_a_byte(path)
+    os.utime(path, ns=(times.st_atime_ns, times.st_mtime_ns))
+
+
+@pytest.mark.parametrize(
+    ("name", "harm"),
+    [
+        (CASE, Path.unlink),
+        (CASE, cut_short),
+        (CASE, alter_a_byte),
+        (DATASET, cut_short),
+        (DATASET, alter_secretly),
+    ],
+)
+def test_a_lost_or_damaged_file_is_made_again(tiny, copied, name, harm):
+    harm(copied.path(name))
+    computed, _ = counts(copied)
+    assert computed == (1 if name == CASE else 0)
+    assert copied.results() == tiny.results()
+
+
+def test_a_damaged_batch_file_is_made_again_from_the_cases(tiny, copied):
+    alter_secretly(copied.path("results/batches/batch-0001.nc"))
+    assert counts(copied)[0] == 0
+    assert copied.results() == tiny.results()
+
+
+def test_a_touched_case_file_reruns_nothing(copied):
+    copied.path(CASE).touch()
+    assert copied.plan("data") == set()
+
+
+def test_another_damping_leaves_the_conservative_cases(tiny, copied):
+    copied.edit("config/paper.yaml", "damping: 3.9537", "damping: 4.1")
+    assert counts(copied) == (10, 4)
+    changed = {name for name, digest in copied.results().items() if tiny.results()[name] != digest}
+    # Their files state the parameters of the study, and are written again for that.
+    assert {"cases/a-conservative/nu-0.6000.nc", "datasets/resonance.nc"} <= changed
+
+
+def test_a_file_kept_under_new_parameters_is_that_of_a_fresh_run(copied, tmp_path):
+    copied.edit("config/paper.yaml", "damping: 3.9537", "damping: 4.1")
+    counts(copied)
+    fresh = Project.create(tmp_path / "fresh", "config/tiny.yaml")
+    fresh.edit("config/paper.yaml", "damping: 3.9537", "damping: 4.1")
+    assert counts(fresh) == (14, 0)
+    assert copied.results() == fresh.results()
+
+
+def test_more_frequencies_keep_the_cases_that_exist(tiny, copied):
+    copied.edit(
+        "config/tiny.yaml",
+        "nu: {start: 0.6, stop: 1.2, step: 0.2}",
+        "nu: {start: 0.6, stop: 1.2, step: 0.2, values: [0.7]}",
+    )
+    assert counts(copied) == (3, 14)
+    cases = {name: d for name, d in tiny.results().items() if name.startswith("cases/")}
+    assert cases.items() <= copied.results().items()
+
+
+def test_another_factor_of_the_strong_damping_computes_its_cases(copied):
+    copied.edit("config/tiny.yaml", "factor: 5", "factor: 6")
+    assert counts(copied)[0] == 2
+
+
+def test_another_size_of_batches_computes_nothing_and_changes_no_byte(tiny, copied):
+    copied.edit("config/tiny.yaml", "cases_per_job: 4", "cases_per_job: 3")
+    assert counts(copied) == (0, 14)
+    assert without_batches(copied) == without_batches(tiny)
+
+
+def test_cores_and_batches_change_no_byte_of_a_fresh_run(tiny, tmp_path):
+    fresh = Project.create(tmp_path / "fresh", "config/tiny.yaml")
+    fresh.edit("config/tiny.yaml", "cases_per_job: 4", "cases_per_job: 100")
+    assert fresh.run("data", cores=1).returncode == 0
+    assert without_batches(fresh) == without_batches(tiny)
+
+
+def test_a_study_without_case_files_gives_the_same_datasets(tiny, tmp_path):
+    fresh = Project.create(tmp_path / "fresh", "config/tiny.yaml")
+    fresh.edit("config/tiny.yaml", "cases_per_job: 4", "cases_per_job: 4\n  case_files: false")
+    assert counts(fresh) == (14, 0)
+    assert without_batches(fresh) == {
+        name: digest for name, digest in tiny.results().items() if name.startswith("datasets/")
+    }
+    fresh.path("results/batches/batch-0001.nc").unlink()
+    assert counts(fresh) == (5, 0)
+
+
+def without_batches(project: Project) -> dict[str, str]:
+    return {n: d for n, d in project.results().items() if not n.startswith("batches/")}
