@@ -218,10 +218,20 @@ def test_micrometres_stand_where_the_static_deflections_do(scale):
         assert here == pytest.approx(there)
 
 
-def test_switches_are_where_the_stiffness_steps():
-    stiffness = np.array([4.0, 4.0, 2.0, 2.0, 4.0, 4.0, 2.0])
-    up, down = orbit.switches(xr.Dataset({"stiffness": ("sample", stiffness)}))
-    assert (up.tolist(), down.tolist()) == ([4], [2, 6])
+@pytest.mark.parametrize(
+    ("stiffness", "up", "down"),
+    [([4, 4, 2, 2, 4, 4], [4], [2]), ([2, 2, 4, 4, 2, 2, 4, 4], [2, 6], [0, 4])],
+)
+def test_switches_are_where_the_stiffness_steps_also_between_periods(stiffness, up, down):
+    found = orbit.switches(xr.Dataset({"stiffness": ("sample", np.array(stiffness, float))}))
+    assert [places.tolist() for places in found] == [up, down]
+
+
+@pytest.mark.parametrize("periods", [1, 2, 21])
+def test_every_period_has_both_switches(courses, periods):
+    for case in courses.values():
+        up, down = orbit.switches(orbit.last_periods(case, periods))
+        assert len(up) == len(down) == periods
 
 
 def test_last_periods_end_with_the_run(courses):

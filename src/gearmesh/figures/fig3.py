@@ -109,9 +109,7 @@ def _add_detail(axes: Axes, course: xr.Dataset) -> None:
     inset.tick_params(labelsize=6.5, length=2)
     inset.set_title("Detail X", fontsize=7.5, pad=2)
     inset.axvline(PAPER_END, color=palette.GREY, lw=0.6, ls=(0, (4, 2)))
-    inset.text(
-        PAPER_END, low, "paper: 0.64 ", fontsize=6.5, va="bottom", ha="right", color=palette.GREY
-    )
+    inset.text(PAPER_END, low, " paper:\n 0.64", fontsize=6.5, va="bottom", color=palette.GREY)
     start, end = DETAIL_X
     axes.add_patch(
         Rectangle((start, low), end - start, high - low, fill=False, ec=palette.GREY, lw=0.6)

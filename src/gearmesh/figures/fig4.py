@@ -19,7 +19,7 @@ SPANS = (21, 5)
 
 _STIFFNESS_UNIT = 1e5
 _POINTS = {"A": "^", "B": "v"}
-_STROBE = {"ls": "none", "marker": "o", "ms": 2.6, "mew": 0.6, "mfc": "white", "mec": palette.BLUE}
+_STROBE = {"ls": "none", "marker": "o", "ms": 5.5, "mew": 0.7, "mfc": "none", "mec": palette.BLUE}
 _SWITCH = {"ls": "none", "ms": 3.6, "mew": 0.6, "mec": "white", "mfc": palette.INK}
 
 
@@ -137,14 +137,15 @@ def _mark_switches(column: np.ndarray, course: xr.Dataset) -> None:
     for (name, marker), where in zip(_POINTS.items(), switches(course), strict=True):
         for axes, variable in ((column[0], "y_rel"), (column[1], "v_rel")):
             axes.plot(period[where], course[variable].values[where], marker=marker, **_SWITCH)
+        column[2].tick_params(which="both", top=False)
         for place in period[where]:
             column[2].annotate(
                 name,
                 (place, 1.0),
                 xycoords=("data", "axes fraction"),
-                xytext=(0, -1.5),
+                xytext=(1.5, -1.5),
                 textcoords="offset points",
-                ha="center",
+                ha="left",
                 va="top",
                 fontsize=6.5,
             )

@@ -115,14 +115,20 @@ def last_periods(case: xr.Dataset, periods: int) -> xr.Dataset:
 def switches(course: xr.Dataset) -> tuple[np.ndarray, np.ndarray]:
     """Return the first samples after the switches of C(t).
 
+    Parameters
+    ----------
+    course : xarray.Dataset
+        Time course of whole mesh periods: a switch may fall on the first sample.
+
     Returns
     -------
     tuple of ndarray
         Points A, where C_min gives way to C_max (a pair of teeth comes into mesh), and
         points B, where C_max gives way to C_min: the paper's loops melt into B.
     """
-    step = np.diff(course["stiffness"].values)
-    return np.flatnonzero(step > 0) + 1, np.flatnonzero(step < 0) + 1
+    stiffness = course["stiffness"].values
+    step = stiffness - np.roll(stiffness, 1)
+    return np.flatnonzero(step > 0), np.flatnonzero(step < 0)
 
 
 def closed(values: np.ndarray) -> np.ndarray:
