@@ -6,17 +6,16 @@
 truncated Fourier series of the stiffness.
 """
 
-import hashlib
 import math
 from collections.abc import Sequence
 from functools import lru_cache
 from itertools import pairwise
-from pathlib import Path
 
 import numpy as np
 from numba import njit
 
 from gearmesh import events, lanes, response, sweep, taylor
+from gearmesh.compilation import persistent
 from gearmesh.friction import mesh_gamma
 from gearmesh.motion import Problem
 from gearmesh.response import Response, Samples
@@ -35,37 +34,16 @@ _PITCH_PHASE = 0.5
 _CHUNK = 256
 
 
-def _compile(sources: str, cache: bool):
-    """Return the compiled sweep; `sources` makes numba's cache notice edits of other modules."""
-
+def _build_sweep(sources: str, cache: bool):
     @njit(cache=cache, nogil=True)
     def compiled(runs, summaries, strobes, extrema, samples, samples_per_period):
-        sources  # noqa: B018 (a free variable is part of the key of the cache)
+        sources  # noqa: B018 (see persistent)
         sweep.sweep(lanes.zeros8(), runs, summaries, strobes, extrema, samples, samples_per_period)
 
     return compiled
 
 
-@lru_cache
-def _compiled_sweep(cache: bool = True):
-    try:
-        return _compile(_digest_sources(), cache)
-    except RuntimeError:  # numba found no folder that it may write its cache to
-        return _compile(_digest_sources(), False)
-
-
-def _sweep(*arguments) -> None:
-    try:
-        _compiled_sweep()(*arguments)
-    except OSError:  # the cache cannot be read or written: compile for this process alone
-        _compiled_sweep(cache=False)(*arguments)
-
-
-def _digest_sources() -> str:
-    digest = hashlib.sha256()
-    for module in (lanes, taylor, events, response, sweep):
-        digest.update(Path(module.__file__).read_bytes())
-    return digest.hexdigest()
+_sweep = persistent(_build_sweep, lanes, taylor, events, response, sweep)
 
 
 def simulate(
