@@ -67,6 +67,9 @@ class Courses:
     width = WIDTH
     """Interval of nu_s to which a bracket is narrowed."""
 
+    steepest = 3
+    """How many of the steepest pieces are looked into where the greatest step is sought."""
+
     def __init__(self, parameters: Parameters, name: str) -> None:
         self._parameters = parameters
         self._variant = variant(name)
@@ -195,7 +198,7 @@ def largest_step(courses: Courses, low: float, high: float) -> dict[str, float]:
     """Measure continuity: the greatest step of y_max that is left over an interval of `WIDTH`."""
     places = courses.scan(low, high)
     y_max = courses.of(highest)
-    steepest = np.argsort(np.nan_to_num(np.abs(np.diff(y_max(places)))))[-3:]
+    steepest = np.argsort(np.nan_to_num(np.abs(np.diff(y_max(places)))))[-courses.steepest :]
     pieces = [refine_step(y_max, places[i], places[i + 1], WIDTH) for i in steepest]
     left, right, step = max(pieces, key=lambda piece: abs(piece[2]))
     return {"nu": (left + right) / 2, "step": abs(step)}
