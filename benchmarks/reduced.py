@@ -19,6 +19,9 @@ from math import sqrt, tan
 
 from gearmesh.motion import Problem
 
+ROUNDING = 1e-12
+"""A switch this close to the start of the period, in periods, stands at it."""
+
 
 @dataclass(frozen=True, slots=True)
 class Piece:
@@ -59,7 +62,8 @@ def pieces(
 ) -> tuple[Piece, ...]:
     """Cut one mesh period, counted from the start of the run, at its switches."""
     half = (contact_ratio - 1) / 2
-    cuts = sorted({0.0, 1.0} | {(p - initial_phase) % 1.0 for p in (half, 0.5, 1 - half)})
+    switches = ((phase - initial_phase) % 1.0 for phase in (half, 0.5, 1 - half))
+    cuts = [0.0, *sorted(p for p in switches if ROUNDING < p < 1 - ROUNDING), 1.0]
     made = []
     for start, end in pairwise(cuts):
         phase = ((start + end) / 2 + initial_phase) % 1.0

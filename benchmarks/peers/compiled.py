@@ -1,7 +1,7 @@
 """The reduced problem for compiled peers: parameters as one array, the right-hand side in numba.
 
 A state is (y, v, Y, V). `at` and `slope` give y and v between two points of a solution by the
-quintic through y, v and a at both: as accurate as the solution for points a thirtieth of a
+quintic through y, v and a at both: as accurate as the solution for points a sixtieth of a
 period apart or closer.
 """
 

@@ -27,8 +27,12 @@ from benchmarks.peers.compiled import (
 from benchmarks.reduced import initial_state, periods, pieces_of
 from gearmesh.motion import Problem
 
-EARLY_POINTS = 32
+EARLY_POINTS = 64
 """Grid points a period where no samples are kept: dense enough for the quintic."""
+
+SHALLOW = 3e-8
+"""Dips between two grid points less deep than this are let pass: the quintic cannot tell them
+from none, and what they change is far less, as they are short too."""
 
 MOST_STEPS = 10_000
 MOST_EXTREMA_PER_PERIOD = 64
@@ -95,9 +99,10 @@ def _exit(regime, h, left, right, backlash):
     turn = -1.0
     if left[1] * right[1] < 0:
         turn = root(slope, 0.0, 0.0, 1.0, h, left, right)
-        following = _left(regime, at(turn, h, left, right), backlash)
-        if following != regime:
-            level = 0.0 if regime > 0 or following > 0 else -backlash
+        y_turn = at(turn, h, left, right)
+        following = _left(regime, y_turn, backlash)
+        level = 0.0 if regime > 0 or following > 0 else -backlash
+        if following != regime and abs(y_turn - level) > SHALLOW:
             return root(at, level, 0.0, turn, h, left, right), following
     following = _left(regime, right[0], backlash)
     if following == regime:
@@ -107,19 +112,27 @@ def _exit(regime, h, left, right, backlash):
 
 
 @njit
-def _go(address, p, x, start, end, tolerance):
-    """Integrate from `start` to `end` (in 1/Ω_s)."""
-    states, _ = dop853(address, x, np.array([start, end]), p, tolerance, tolerance, MOST_STEPS)
-    return states[1]
+def _follow(address, p, x, times, tolerance):
+    """Return the states at `times` (in 1/Ω_s), the first of which is that of `x`.
+
+    The wrapper leaves the last time's state unwritten where the last step ends a rounding short
+    of it, so the integration goes on a few roundings more.
+    """
+    beyond = np.append(times, times[-1] * (1 + 1e-14))
+    states, success = dop853(address, x, beyond, p, tolerance, tolerance, MOST_STEPS)
+    if not success:
+        states[:] = np.nan
+    return states[:-1]
 
 
 @njit
 def _land(address, p, x, start, guess, level, tolerance):
     """Bring the state from `start` to the instant near `guess` at which y = level."""
-    for _ in range(8):
-        reached = _go(address, p, x, start, guess, tolerance)
+    for _ in range(30):
+        reached = _follow(address, p, x, np.array([start, guess]), tolerance)[1]
         delta = -(reached[0] - level) / reached[1]
-        guess += delta
+        # The series below is used this close only; the solver cannot go back behind its start.
+        guess = max(guess + delta, start * (1 + 1e-14))
         if abs(delta) < 1e-7:
             break
     acceleration, body_acceleration = accelerate(reached, p)
@@ -148,7 +161,7 @@ def _run(address, p, x, table, contact, loss, backlash, length, total, first_kep
             while now < end:
                 set_regime(p, regime, table[i_piece], contact, loss, backlash)
                 grid = _grid(now, end, per_period)
-                states, _ = dop853(address, x, grid * length, p, tolerance, tolerance, MOST_STEPS)
+                states = _follow(address, p, x, grid * length, tolerance)
                 now = end
                 following = regime
                 left[0], left[1] = x[0], x[1]
