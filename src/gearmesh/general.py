@@ -9,20 +9,17 @@ import itertools
 import math
 
 import numpy as np
+from numba import njit
 
-from gearmesh import stiffness
+from gearmesh import general_kernel, general_roots, general_series, motion, response, stiffness
+from gearmesh.compilation import persistent
 from gearmesh.friction import follows_run_out, pairs_in_contact
-from gearmesh.general_kernel import EXTREMUM, SAMPLE, SUMMARY, run
+from gearmesh.general_kernel import EXTREMUM, SAMPLE, SUMMARY
 from gearmesh.general_roots import MAX_DEGREE
 from gearmesh.general_series import CASE, MODE, STRETCH
+from gearmesh.integrator import LOOSENING, SENSITIVE
 from gearmesh.motion import Problem, bearing_damping, dynamic_force, start, sum_and_difference
 from gearmesh.response import CONTACT_LOSS, Response, Samples
-
-LOOSENING = 100.0
-"""How much looser the companion run is whose difference estimates the errors."""
-
-SENSITIVE = 1e5
-"""An estimated error above this multiple of the tolerance marks a sensitive orbit."""
 
 _STATUS = ("ok", "step_limit", "extremum_overflow", "not_finite")
 _EXTREMA_PER_PERIOD = 64
@@ -31,6 +28,20 @@ _STEPS_PER_PERIOD = 2000
 # In radians of the fastest oscillation. The series of an oscillation too small for the error
 # control (an unexcited mode) still have to converge, else it grows from rounding.
 _LONGEST_STEP = 2.0
+
+
+def _build_run(sources: str, cache: bool):
+    @njit(cache=cache, nogil=True)
+    def compiled(*arguments):
+        sources  # noqa: B018 (see persistent)
+        general_kernel.run(*arguments)
+
+    return compiled
+
+
+_compiled_run = persistent(
+    _build_run, general_roots, general_series, general_kernel, motion, response
+)
 
 
 def integrate(
@@ -112,7 +123,7 @@ def _run(problem: Problem, tolerance: float, samples_per_period: int, order: int
     summaries = np.zeros(1, SUMMARY)
     summaries["y_max"], summaries["y_min"] = -np.inf, np.inf
     state = np.concatenate(start(problem))
-    run(
+    _compiled_run(
         _case(problem, tolerance, order),
         _stretches(problem),
         _waves(problem),

@@ -86,13 +86,13 @@ _NODES = 0.5 * (_NODES + 1.0)
 _WEIGHTS = 0.5 * _WEIGHTS
 
 
-@njit(cache=True)
+@njit
 def _take_value(summary, y):
     summary.y_max = max(summary.y_max, y)
     summary.y_min = min(summary.y_min, y)
 
 
-@njit(cache=True)
+@njit
 def _record_extremum(case, mode, y, extrema, summary):
     if mode.period < case.first_kept:
         return
@@ -108,7 +108,7 @@ def _record_extremum(case, mode, y, extrema, summary):
     _take_value(summary, y)
 
 
-@njit(cache=True)
+@njit
 def _cross(case, mode, summary):
     """Enter the next regime in the direction of motion."""
     mode.level = level(case, mode.regime, mode.direction)
@@ -121,7 +121,7 @@ def _cross(case, mode, summary):
             summary.contact_losses += 1
 
 
-@njit(cache=True)
+@njit
 def _first_sign(case, stretch, mode, fourier, series):
     """Return the sign of the first coefficient of y' that does not vanish, 0 if all do."""
     expand(case, stretch, mode, fourier, series, case.order)
@@ -131,7 +131,7 @@ def _first_sign(case, stretch, mode, fourier, series):
     return 0.0
 
 
-@njit(cache=True)
+@njit
 def _settle_direction(case, stretch, mode, fourier, series, rest, extrema, summary):
     """Find the direction of motion and the regime, and record an extremum where y has turned."""
     if mode.direction * series[V, 0] < 0.0:
@@ -160,13 +160,13 @@ def _settle_direction(case, stretch, mode, fourier, series, rest, extrema, summa
         series[Y, 0] = mode.level
 
 
-@njit(cache=True)
+@njit
 def _needed_force(case, state):
     """Return the F_T that holds z_3' = z_2'."""
     return 0.5 * case.bearing_stiffness * (state[Z_3] - state[Z_2])
 
 
-@njit(cache=True)
+@njit
 def _settle_slip(case, stretch, mode, fourier, state, series):
     """Find the sign of z_3' - z_2', or that the flanks stick."""
     slip = state[6 + Z_3] - state[6 + Z_2]
@@ -192,7 +192,7 @@ def _settle_slip(case, stretch, mode, fourier, state, series):
         mode.slip_sign = 1.0 if needed <= 0.0 else -1.0
 
 
-@njit(cache=True)
+@njit
 def _settle_signs(case, stretch, mode, fourier, state, series):
     """Find both signs of eq. (6); return whether there are any.
 
@@ -215,7 +215,7 @@ def _settle_signs(case, stretch, mode, fourier, state, series):
     return False
 
 
-@njit(cache=True)
+@njit
 def _choose_step(case, series, remaining):
     """Return the step for which the last two terms stay below the tolerance, to the next stop."""
     step = min(remaining, case.longest_step)
@@ -229,7 +229,7 @@ def _choose_step(case, series, remaining):
     return step
 
 
-@njit(cache=True)
+@njit
 def _first(row, degree, step, sign, scaled, table):
     """Return the share of the step up to the first change of sign of the series in `row`."""
     power = 1.0
@@ -239,7 +239,7 @@ def _first(row, degree, step, sign, scaled, table):
     return first_change(scaled, degree, sign, table)
 
 
-@njit(cache=True)
+@njit
 def _first_of_signs(case, stretch, mode, state, step, series, scaled, table):
     """Return the share of the step up to the first change in eq. (6), and what it is."""
     degree = case.order - 1
@@ -261,7 +261,7 @@ def _first_of_signs(case, stretch, mode, state, step, series, scaled, table):
     return (gives_way, _RELEASED) if gives_way < end else (end, event)
 
 
-@njit(cache=True)
+@njit
 def _rounding(state):
     """Return the scale of the rounding errors of y' and y'', with forces of 1 and more."""
     total = 1.0
@@ -270,7 +270,7 @@ def _rounding(state):
     return total
 
 
-@njit(cache=True)
+@njit
 def _rests(row, degree, step, rest):
     """Return whether a series stays below `rest` throughout the step."""
     total = 0.0
@@ -283,7 +283,7 @@ def _rests(row, degree, step, rest):
     return True
 
 
-@njit(cache=True)
+@njit
 def _find_event(case, stretch, mode, state, step, series, rest, scaled, table):
     """Return the share of the step up to its first event, and what that is."""
     end = 1.0
@@ -309,7 +309,7 @@ def _find_event(case, stretch, mode, state, step, series, rest, scaled, table):
     return end, event
 
 
-@njit(cache=True)
+@njit
 def _sample(case, stretch, mode, fourier, series, until, samples, per_period, summary):
     """Write the samples before `until`."""
     first = (mode.period - case.first_kept) * per_period
@@ -332,7 +332,7 @@ def _sample(case, stretch, mode, fourier, series, until, samples, per_period, su
         summary.samples += 1
 
 
-@njit(cache=True)
+@njit
 def _measure(case, mode, series, duration, summary):
     """Add the step to the sums over the kept revolutions."""
     total = 0.0
@@ -346,7 +346,7 @@ def _measure(case, mode, series, duration, summary):
         summary.inverse_time += duration
 
 
-@njit(cache=True)
+@njit
 def _advance(case, mode, state, series, duration):
     """Move the state along the series; forget what was exactly 0 before."""
     if mode.time + duration == mode.time:
@@ -357,7 +357,7 @@ def _advance(case, mode, state, series, duration):
     mode.turns = mode.on_level = mode.on_bracket = mode.released = False
 
 
-@njit(cache=True)
+@njit
 def _follow(case, stretch, mode, state, event, summary):
     """Change what the event changes."""
     if event == _STOPPED:
@@ -375,7 +375,7 @@ def _follow(case, stretch, mode, state, event, summary):
         mode.released = True
 
 
-@njit(cache=True)
+@njit
 def _pass_boundary(case, mode, state, waves, deviation, series, strobes, summary):
     """Enter the next mesh period and write its strobe."""
     mode.period += 1
@@ -388,7 +388,7 @@ def _pass_boundary(case, mode, state, waves, deviation, series, strobes, summary
         _take_value(summary, series[Y, 0])
 
 
-@njit(cache=True)
+@njit
 def _start(case, mode, state, waves, deviation, series, strobes, summary):
     """Set the branches of all laws in the state at the start."""
     begin(case, mode, state, waves, deviation, series)
@@ -406,7 +406,7 @@ def _start(case, mode, state, waves, deviation, series, strobes, summary):
         _take_value(summary, y)
 
 
-@njit(cache=True, nogil=True)
+@njit
 def run(
     cases,
     stretches,

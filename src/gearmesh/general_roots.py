@@ -43,7 +43,7 @@ def _bernstein_weights() -> np.ndarray:
 _WEIGHTS = _bernstein_weights()
 
 
-@njit(cache=True)
+@njit
 def evaluate(coefficients, degree, s):
     """Return the polynomial at `s`."""
     value = coefficients[degree]
@@ -52,7 +52,7 @@ def evaluate(coefficients, degree, s):
     return value
 
 
-@njit(cache=True)
+@njit
 def evaluate_with_slope(coefficients, degree, s):
     """Return the polynomial and its derivative at `s`."""
     value = coefficients[degree]
@@ -63,7 +63,7 @@ def evaluate_with_slope(coefficients, degree, s):
     return value, slope
 
 
-@njit(cache=True)
+@njit
 def refine(coefficients, degree, low, high, sign):
     """Return where the polynomial changes sign between `low`, where it has `sign`, and `high`.
 
@@ -88,7 +88,7 @@ def refine(coefficients, degree, low, high, sign):
     return at
 
 
-@njit(cache=True)
+@njit
 def _variations(row, degree):
     """Return the number of sign changes in a row of coefficients, and its first and last sign."""
     changes = 0
@@ -105,7 +105,7 @@ def _variations(row, degree):
     return changes, first, last
 
 
-@njit(cache=True)
+@njit
 def _halve(parent, left, right, degree):
     """Split the Bernstein coefficients of an interval into those of its halves (de Casteljau)."""
     for j in range(degree + 1):
@@ -116,7 +116,7 @@ def _halve(parent, left, right, degree):
             right[j] = 0.5 * (right[j] + right[j + 1])
 
 
-@njit(cache=True)
+@njit
 def first_change(coefficients, degree, sign, table):
     """Return the least s in <0; 1> where the polynomial no longer has `sign`, or `NEVER`.
 
@@ -154,7 +154,7 @@ def first_change(coefficients, degree, sign, table):
     return _search(coefficients[start:], m, sign, table)
 
 
-@njit(cache=True)
+@njit
 def _search(coefficients, degree, sign, table):
     """Go through the intervals from left to right; row `depth` of the table is the next one."""
     depth = 0

@@ -100,7 +100,7 @@ ANGLE_3 is Phi_3, ANGLE_2 is Delta - Phi_2.
 SERIES_SHAPE = (N_ROWS, MAX_DEGREE + 1)
 
 
-@njit(cache=True)
+@njit
 def level(case, regime, direction):
     """Return the value of y at which motion in `direction` leaves the regime."""
     if direction > 0.0:
@@ -112,7 +112,7 @@ def level(case, regime, direction):
     return -case.backlash if regime == CONTACT_LOSS else 0.0
 
 
-@njit(cache=True)
+@njit
 def _fill_harmonics(row, order, nu, angle, amplitudes):
     """Fill a row with the series of the sum of a_n cos(n nu t) + b_n sin(n nu t) at `angle`."""
     row[: order + 1] = 0.0
@@ -127,7 +127,7 @@ def _fill_harmonics(row, order, nu, angle, amplitudes):
             value, other = other * scale, -value * scale
 
 
-@njit(cache=True)
+@njit
 def _product(a, b, k):
     """Return the k-th coefficient of the product of two series."""
     total = 0.0
@@ -136,7 +136,7 @@ def _product(a, b, k):
     return total
 
 
-@njit(cache=True)
+@njit
 def _extend_angle(sine, cosine, angle, k):
     """Add the k-th coefficients of the sine and cosine of an angle whose k-th is there."""
     if k == 0:
@@ -149,7 +149,7 @@ def _extend_angle(sine, cosine, angle, k):
     sine[k], cosine[k] = s / k, -c / k
 
 
-@njit(cache=True)
+@njit
 def _extend_relative_motion(case, series, k, mean_angle):
     """Add the k-th coefficient of y, eq. (3), and of the angles that it takes.
 
@@ -177,7 +177,7 @@ def _extend_relative_motion(case, series, k, mean_angle):
         series[V, k - 1] = k * y
 
 
-@njit(cache=True)
+@njit
 def begin(case, mode, state, waves, deviation, series):
     """Write what the series start from: the state, y and y', and the prescribed functions."""
     angle = 2.0 * np.pi * (mode.time / case.period + case.initial_phase)
@@ -200,7 +200,7 @@ def begin(case, mode, state, waves, deviation, series):
         series[BRACKET, 0] = 0.0
 
 
-@njit(cache=True)
+@njit
 def elastic_coefficient(case, stretch, mode, series, fourier, k):
     """Return the k-th coefficient of the elastic force."""
     if mode.regime == CONTACT_LOSS:
@@ -217,7 +217,7 @@ def elastic_coefficient(case, stretch, mode, series, fourier, k):
     return total
 
 
-@njit(cache=True)
+@njit
 def _damping(law, direction, series, k):
     """Return the k-th coefficient of the damping force of eq. (7)."""
     force = law[0] * series[V, k]
@@ -229,7 +229,7 @@ def _damping(law, direction, series, k):
     return force
 
 
-@njit(cache=True)
+@njit
 def _friction(case, stretch, mode, series, k):
     """Return the k-th coefficients of F_T and of the moments on both wheels over R_b."""
     if stretch.gamma == 0.0:
@@ -252,7 +252,7 @@ def _friction(case, stretch, mode, series, k):
     return force, -(case.middle_arm * force + shift), -(case.middle_arm * force - shift)
 
 
-@njit(cache=True)
+@njit
 def _lever(case, series, wheel, k):
     """Return the k-th coefficient of N dy/dphi over R_b for wheel 3 or 2."""
     force = series[NORMAL, k]
@@ -266,7 +266,7 @@ def _lever(case, series, wheel, k):
     return force
 
 
-@njit(cache=True)
+@njit
 def expand(case, stretch, mode, fourier, series, order):
     """Fill the series up to `order`, from what `begin` wrote."""
     law = case.lubricant if mode.regime == CONTACT_LOSS else case.material
