@@ -5,7 +5,6 @@ SciPy's DOP853 between events that SciPy locates, and matrix exponentials.
 """
 
 import itertools
-import math
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -270,8 +269,3 @@ def period_map_trace(strobes: np.ndarray) -> float:
     """Return the trace of the map (y, y') -> (y, y') over a period from four strobes in a row."""
     steps = np.diff(strobes[:4], axis=0)
     return float(np.trace(steps[1:].T @ np.linalg.inv(steps[:-1].T)))
-
-
-def in_period(problem: Problem, time: float) -> float:
-    """Return the time since the last boundary of the mesh periods."""
-    return math.fmod(time, problem.period)

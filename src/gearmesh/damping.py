@@ -107,7 +107,7 @@ def variant(name: str) -> Variant:
     if multiple:
         base, factor = multiple[1], float(multiple[2])
     if base not in VARIANTS:
-        close = difflib.get_close_matches(base, VARIANTS, n=1, cutoff=0.0)[0]
+        close = difflib.get_close_matches(base.lower(), VARIANTS, n=1, cutoff=0.0)[0]
         raise InputError(
             f"variant: unknown name {name!r}; did you mean {close!r}? "
             "(gearmesh variants lists all, and '-5x' behind a name multiplies its damping)"
