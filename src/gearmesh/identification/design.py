@@ -1,0 +1,93 @@
+"""Samples of the open parameters: low-discrepancy designs, and what a sample means."""
+
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+
+from gearmesh.identification.settings import KINDS, Design, Settings
+from gearmesh.parameters import Parameters
+
+Sample = dict[str, float | str]
+"""Factor -> value; all lengths in static deflections, masses in m_red, stiffnesses in C_s."""
+
+NEUTRAL: Sample = {
+    "initial_phase": 0.0,
+    "initial_velocity": 0.0,
+    "kind": KINDS[0],
+    "eccentricity_3": 0.0,
+    "eccentricity_2": 0.0,
+    "eccentricity_angle": 0.0,
+}
+"""Values that remove an effect: they hold where a design says nothing."""
+
+
+def stated(parameters: Parameters) -> Sample:
+    """Return the sample that a study states."""
+    assumed, y_st = parameters.assumed, parameters.assumed.static_deflection
+    return NEUTRAL | {
+        "backlash": assumed.backlash / y_st,
+        "damping_length": assumed.damping_length / y_st,
+        "body_mass": assumed.body_mass / parameters.printed.reduced_mass,
+        "bearing_stiffness": assumed.bearing_stiffness / parameters.stiffness_mean,
+        "bearing_damping_ratio": assumed.bearing_damping_ratio,
+        "friction_coefficient": assumed.friction_coefficient,
+        "initial_phase": assumed.initial_phase,
+        "eccentricity_3": assumed.eccentricity_3 / y_st,
+        "eccentricity_2": assumed.eccentricity_2 / y_st,
+        "eccentricity_angle": assumed.eccentricity_angle,
+    }
+
+
+def parameters_of(sample: Mapping[str, float | str], study: Parameters) -> Parameters:
+    """Return the parameters of a study with the values of a sample in place of its own.
+
+    The initial velocity and the kind of run are no parameters of a study; they are left out.
+    """
+    y_st = study.assumed.static_deflection
+    scales = {
+        "backlash": y_st,
+        "damping_length": y_st,
+        "body_mass": study.printed.reduced_mass,
+        "bearing_stiffness": study.stiffness_mean,
+        "bearing_damping_ratio": 1.0,
+        "friction_coefficient": 1.0,
+        "initial_phase": 1.0,
+        "eccentricity_3": y_st,
+        "eccentricity_2": y_st,
+        "eccentricity_angle": 1.0,
+    }
+    changes = {name: float(sample[name]) * scale for name, scale in scales.items()}
+    # No validation: the ranges of the settings are inside those of the model.
+    return study.model_copy(update={"assumed": study.assumed.model_copy(update=changes)})
+
+
+def left_alone(design: Design, study: Parameters) -> str:
+    """Return a digest of all parameters of a study that a design leaves alone."""
+    sample = stated(study) | NEUTRAL | dict.fromkeys(design.vary, 0.0)
+    return parameters_of(sample, study).digest()
+
+
+def unit_points(design: Design) -> np.ndarray:
+    """Return the scrambled Sobol' points of a design, shape (points, varied factors)."""
+    # Imported here: the pipeline looks at designs without drawing them, and this takes its time.
+    from scipy.stats import qmc
+
+    return qmc.Sobol(len(design.vary), seed=design.seed).random(design.points)
+
+
+def samples(
+    points: np.ndarray, design: Design, settings: Settings, study: Parameters
+) -> list[Sample]:
+    """Turn points of the unit cube, one row each, into samples."""
+    base = stated(study) | NEUTRAL | design.fixed
+    return [base | _values(row, design.vary, settings) for row in points]
+
+
+def _values(row: Sequence[float], vary: Sequence[str], settings: Settings) -> Sample:
+    values: Sample = {}
+    for name, unit in zip(vary, row, strict=True):
+        if name == "kind":
+            values[name] = KINDS[min(int(unit * len(KINDS)), len(KINDS) - 1)]
+        else:
+            values[name] = settings.ranges[name].value(float(unit))
+    return values

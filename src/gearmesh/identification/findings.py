@@ -1,0 +1,324 @@
+"""Everything that the samples tell, as one plain mapping: what `config/identified.yaml` holds."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from gearmesh.claims import Claim
+from gearmesh.identification import inference, prediction, sensitivity, synthetic
+from gearmesh.identification.focus import Cloud, prior_weights
+from gearmesh.identification.inference import ENOUGH, Fit, effective_size
+from gearmesh.identification.settings import KINDS, Settings
+from gearmesh.identification.store import Samples
+from gearmesh.identification.wording import (
+    statements,
+    weight_of_claims,
+)
+
+SURVEY, NATURAL, TRUTH = "survey", "natural", "truth"
+"""Even designs: the plausible space, the natural reading of the paper, synthetic papers."""
+
+CUTS = 50
+"""Random cuts of the claims into two halves."""
+
+THRESHOLDS = (
+    "F2.3|near 0.66",
+    "F2.3|near 0.8",
+    "F2.5|beyond the jump",
+    "F2.6",
+    "F3.1|y_max",
+    "F3.2|end",
+    "F3.4|ratio",
+    "F4.1|0.60",
+    "F4.1|1.05",
+    "F4.1|1.20",
+    "F6.1|from",
+    "F6.1|to",
+    "F6.2|5k",
+    "F2.1|c-material",
+    "F2.2|c",
+)
+"""Measured values whose sensitivity is told; each stands for its variants."""
+
+
+@dataclass(frozen=True)
+class Family:
+    """An even design with the focused ones that follow it, weighed as one even design."""
+
+    samples: Samples
+    prior: np.ndarray
+    factors: tuple[str, ...]
+
+    @classmethod
+    def of(
+        cls, samples: Samples, chain: Sequence[str], clouds: Sequence[Cloud], settings: Settings
+    ) -> "Family":
+        """Put the designs of a chain together."""
+        factors = settings.designs[chain[0]].vary
+        parts = [samples.of(name) for name in chain]
+        places = np.concatenate([part.unit(factors) for part in parts])
+        sizes = [part.design.size for part in parts]
+        order = np.concatenate([np.flatnonzero(samples.design == name) for name in chain])
+        prior = np.empty(order.size)
+        prior[np.argsort(np.argsort(order))] = prior_weights(places, sizes, list(clouds))
+        return cls(samples.of(*chain), prior, factors)
+
+
+@dataclass(frozen=True)
+class Analysis:
+    """Samples, seen through a ledger.
+
+    Attributes
+    ----------
+    samples : Samples
+        Of all designs.
+    clouds : dict of str to Cloud
+        Of the focused designs.
+    ledger : sequence of Claim
+        The claims that may depend on the open parameters.
+    settings : Settings
+        Ranges, designs, wordings.
+    """
+
+    samples: Samples
+    clouds: dict[str, Cloud]
+    ledger: Sequence[Claim]
+    settings: Settings
+
+    @cached_property
+    def stated(self):
+        """What the claims state."""
+        return statements(self.ledger, self.settings.wordings)
+
+    @cached_property
+    def claims(self) -> list[str]:
+        """Ids of the claims."""
+        return [claim.id for claim in self.ledger]
+
+    def family(self, first: str) -> Family:
+        """Return an even design with all focused ones that follow it."""
+        chain = [first]
+        while following := [n for n, d in self.settings.designs.items() if d.around == chain[-1]]:
+            chain.append(following[0])
+        clouds = [self.clouds[name] for name in chain[1:]]
+        return Family.of(self.samples, chain, clouds, self.settings)
+
+    def weights(self, samples: Samples) -> dict[str, np.ndarray]:
+        """Return claim -> how well each sample fits it."""
+        return weight_of_claims(self.stated, samples.measured)
+
+    def held(self, samples: Samples) -> dict[str, np.ndarray]:
+        """Return claim -> whether it holds on each sample."""
+        return {name: weight > 0 for name, weight in self.weights(samples).items()}
+
+    def evidence(self, family: Family) -> list[str]:
+        """Return the largest set of claims that enough samples meet together."""
+        held = np.array(list(self.held(family.samples).values()))
+        patterns = np.unique(held.T, axis=0)
+        sizes = []
+        for pattern in patterns:
+            meets = np.all(held[pattern], axis=0)
+            sizes.append(effective_size(family.prior * meets))
+        enough = np.array(sizes) >= ENOUGH
+        best = max(
+            np.flatnonzero(enough), key=lambda i: (patterns[i].sum(), sizes[i]), default=None
+        )
+        if best is None:
+            return self.claims
+        return [name for name, kept in zip(self.claims, patterns[best], strict=True) if kept]
+
+    def fit(self, family: Family, claims: Sequence[str]) -> Fit:
+        """Fit some claims."""
+        weight = self.weights(family.samples)
+        return inference.fit([weight[name] for name in claims], family.prior)
+
+
+def findings(analysis: Analysis) -> dict[str, object]:
+    """Return all findings, ready for YAML."""
+    survey, natural = analysis.family(SURVEY), analysis.family(NATURAL)
+    return {
+        "samples": {
+            name: int(np.sum(analysis.samples.design == name)) for name in analysis.settings.designs
+        },
+        "claims": claims_table(analysis, survey, natural),
+        "joint": {
+            "plausible": _joint(analysis, survey),
+            "natural": _joint(analysis, natural),
+        },
+        "regions": {
+            "plausible": regions(analysis, survey),
+            "natural": regions(analysis, natural),
+        },
+        "sensitivity": sensitivities(analysis),
+        "prediction": predictions(analysis, survey),
+        "recovery": recoveries(analysis, survey),
+    }
+
+
+def claims_table(analysis: Analysis, survey: Family, natural: Family) -> dict[str, object]:
+    """Return for each claim where it holds: shares of the plausible space, and what it costs."""
+    even = analysis.samples.of(SURVEY)
+    found = {}
+    held_even, held_natural = analysis.held(even), analysis.held(natural.samples)
+    held = analysis.held(survey.samples)
+    evidence = analysis.evidence(survey)
+    for name in analysis.claims:
+        value, error = inference.share(held_even[name], np.ones(even.design.size))
+        others = [other for other in evidence if other != name]
+        fit = analysis.fit(survey, others)
+        found[name] = {
+            "share": _rounded(value),
+            "error": _rounded(error),
+            "standing": inference.standing(value),
+            "natural": _rounded(inference.share(held_natural[name], natural.prior)[0]),
+            "given the others": _rounded(inference.predictive(held[name], fit)),
+        }
+    return found
+
+
+def _joint(analysis: Analysis, family: Family) -> dict[str, object]:
+    held = analysis.held(family.samples)
+    every = np.all(list(held.values()), axis=0)
+    value, error = inference.share(every, family.prior)
+    return {
+        "all": {"share": _rounded(value), "error": _rounded(error), "samples": int(every.sum())},
+        "largest": [
+            {"missing": list(missing), "share": _rounded(share)}
+            for missing, share in inference.joint_sets(held, family.prior)
+        ],
+    }
+
+
+def regions(analysis: Analysis, family: Family) -> dict[str, object]:
+    """Return for each factor where it may lie, by the largest set of claims that hold together."""
+    evidence = analysis.evidence(family)
+    fit = analysis.fit(family, evidence)
+    table: dict[str, object] = {}
+    for factor in family.factors:
+        places = family.samples.places[factor]
+        if factor == "kind":
+            values = family.samples.values[factor]
+            table[factor] = {
+                kind: _rounded(float(fit.weights @ (values == i))) for i, kind in enumerate(KINDS)
+            }
+            continue
+        bounds = analysis.settings.ranges[factor]
+        low, high = inference.region(places, fit.weights)
+        inner = inference.region(places, fit.weights, 0.5)
+        meets = places[fit.weights > 0]
+        table[factor] = {
+            "prior": [bounds.low, bounds.high],
+            "region": [_rounded(bounds.value(low)), _rounded(bounds.value(high))],
+            "half": [_rounded(bounds.value(place)) for place in inner],
+            "met": [_rounded(bounds.value(float(end))) for end in (meets.min(), meets.max())],
+            "of the prior": _rounded(high - low),
+        }
+    return {
+        "without": [name for name in analysis.claims if name not in evidence],
+        "forgiven": fit.forgiven,
+        "samples": _rounded(fit.size),
+        "factors": table,
+    }
+
+
+def sensitivities(analysis: Analysis) -> dict[str, object]:
+    """Return for each threshold the say of each factor, over the plausible space."""
+    even = analysis.samples.of(SURVEY)
+    factors = analysis.settings.designs[SURVEY].vary
+    found = {}
+    for column in _threshold_columns(even):
+        values = even.measured[column]
+        found[column] = {}
+        for factor in factors:
+            slices = len(KINDS) if factor == "kind" else sensitivity.SLICES
+            index = sensitivity.index(even.places[factor], values, slices)
+            found[column][factor] = {
+                "index": _rounded(index.value),
+                "interval": [_rounded(index.low), _rounded(index.high)],
+                "chance": _rounded(index.chance),
+            }
+    return found
+
+
+def _threshold_columns(samples: Samples) -> list[str]:
+    return [
+        column
+        for name in THRESHOLDS
+        for column in samples.measured
+        if column == name or column.startswith(f"{name}|")
+    ]
+
+
+def predictions(analysis: Analysis, family: Family) -> dict[str, object]:
+    """Return how well one half of the claims predicts the other."""
+    weight = analysis.weights(family.samples)
+    evidence = analysis.evidence(family)
+    cuts = prediction.halves(evidence, analysis.settings.together, CUTS, seed=1)
+    made = []
+    for first, second in cuts:
+        for fitted, held_out in ((first, second), (second, first)):
+            made.append(
+                prediction.predict(
+                    fitted, held_out, weight, analysis.stated, family.samples.measured, family.prior
+                )
+            )
+    covered = [hit for p in made for hit in p.covered.values()]
+    narrowed = [width for p in made for width in p.narrowed.values()]
+    uncertain = [
+        (p.before[name], p.after[name])
+        for p in made
+        for name in p.after
+        if p.before[name] < inference.ROBUST_FROM
+    ]
+    return {
+        "fits": len(made),
+        "gain in bits": _rounded(float(np.mean([p.gain for p in made]))),
+        "helped": _rounded(float(np.mean([p.gain > 0 for p in made]))),
+        "conditional claims": {
+            "before": _rounded(float(np.mean([before for before, _ in uncertain]))),
+            "after": _rounded(float(np.mean([after for _, after in uncertain]))),
+        },
+        "numbers": {
+            "level": prediction.COVERED,
+            "covered": _rounded(float(np.mean(covered))),
+            "width": _rounded(float(np.mean(narrowed))),
+        },
+    }
+
+
+def recoveries(analysis: Analysis, family: Family) -> dict[str, object]:
+    """Return how well the parameters of synthetic papers are found."""
+    truths = analysis.samples.of(TRUTH)
+    made = []
+    for i in range(truths.design.size):
+        made.append(
+            synthetic.recover(
+                {name: float(values[i]) for name, values in truths.measured.items()},
+                {name: float(truths.places[name][i]) for name in family.factors},
+                analysis.stated,
+                family.samples.measured,
+                family.samples.places,
+                family.prior,
+            )
+        )
+    return {
+        "papers": len(made),
+        "recovered": sum(one.recovered for one in made),
+        "level": inference.LEVEL,
+        "factors": {
+            name: {
+                "inside": sum(one.inside[name] for one in made),
+                "width": _rounded(float(np.median([one.width[name] for one in made]))),
+            }
+            for name in family.factors
+        },
+        "samples": _rounded(float(np.median([one.found.size for one in made]))),
+        "forgiven": _rounded(float(np.median([one.found.forgiven for one in made]))),
+    }
+
+
+def _rounded(value: float) -> float:
+    """Keep four significant digits: the samples know no more."""
+    return float(f"{value:.4g}")

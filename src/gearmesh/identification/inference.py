@@ -1,0 +1,160 @@
+"""Which values of the open parameters fit what the paper says.
+
+Approximate Bayesian computation by rejection: samples of the prior count by how well what they
+measure fits the paper's words (Beaumont, Annu. Rev. Stat. Appl. 6, 2019). The prior is even over
+the ranges of the settings, on their scales.
+"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.special import ndtr
+
+ROBUST, CONDITIONAL, CONTRADICTED = "robust", "conditional", "contradicted"
+
+ROBUST_FROM = 0.9
+"""A claim that holds in this share of the plausible space, or more, is robust."""
+
+CONTRADICTED_BELOW = 0.01
+"""A claim that holds in less than this share is contradicted."""
+
+ENOUGH = 40
+"""Samples, in effect, that an inference needs; with fewer, claims are forgiven one by one."""
+
+LEVEL = 0.95
+"""Probability of the regions."""
+
+
+def effective_size(weights: np.ndarray) -> float:
+    """Return the number of equal samples that weights are worth (Kish)."""
+    total = weights.sum()
+    return float(total**2 / np.sum(weights**2)) if total > 0 else 0.0
+
+
+def share(held: np.ndarray, prior: np.ndarray) -> tuple[float, float]:
+    """Return the share of the prior where something holds, and its standard error."""
+    prior = prior / prior.sum()
+    value = float(prior @ held)
+    return value, float(np.sqrt(np.sum(prior**2 * (held - value) ** 2)))
+
+
+def standing(value: float) -> str:
+    """Call a claim robust, conditional or contradicted by its share of the plausible space."""
+    if value >= ROBUST_FROM:
+        return ROBUST
+    return CONTRADICTED if value < CONTRADICTED_BELOW else CONDITIONAL
+
+
+@dataclass(frozen=True)
+class Fit:
+    """What is left of the prior.
+
+    Attributes
+    ----------
+    weights : ndarray, shape (n_samples,)
+        With sum 1.
+    forgiven : int
+        How many statements a sample may miss and still count; 0 if enough samples miss none.
+    """
+
+    weights: np.ndarray
+    forgiven: int
+
+    @property
+    def size(self) -> float:
+        """Samples, in effect."""
+        return effective_size(self.weights)
+
+
+def fit(evidence: Sequence[np.ndarray], prior: np.ndarray, enough: float = ENOUGH) -> Fit:
+    """Weigh samples by how well they fit.
+
+    Parameters
+    ----------
+    evidence : sequence of ndarray, shape (n_samples,)
+        For each statement, how well each sample fits it, 0 to 1.
+    prior : ndarray, shape (n_samples,)
+        Weights that make the samples an even design.
+    enough : float
+        Effective number of samples below which one statement more is forgiven.
+    """
+    fits = np.array(evidence)
+    missed = np.sum(fits == 0.0, axis=0)
+    kept = np.prod(np.where(fits == 0.0, 1.0, fits), axis=0)
+    for forgiven in range(int(missed.min()), len(fits) + 1):
+        weights = prior * kept * (missed <= forgiven)
+        if effective_size(weights) >= enough:
+            break
+    return Fit(weights / weights.sum(), forgiven)
+
+
+def region(places: np.ndarray, weights: np.ndarray, level: float = LEVEL) -> tuple[float, float]:
+    """Return the central interval of a factor, on the unit interval.
+
+    The samples are smoothed by a kernel of Silverman's width first: a few of them say nothing
+    about the ends of a region.
+    """
+    ends = 0.5 * (1 - level), 0.5 * (1 + level)
+    low, high = (_quantile(places, weights, p) for p in ends)
+    return low, high
+
+
+def quantile(places: np.ndarray, weights: np.ndarray, probability: float) -> float:
+    """Return a quantile of weighted places."""
+    order = np.argsort(places)
+    cumulative = np.cumsum(weights[order])
+    middle = cumulative - 0.5 * weights[order]
+    return float(np.interp(probability * cumulative[-1], middle, places[order]))
+
+
+def _quantile(places: np.ndarray, weights: np.ndarray, probability: float) -> float:
+    kept = weights > 0
+    places, weights = places[kept], weights[kept] / weights[kept].sum()
+    mean = weights @ places
+    spread = np.sqrt(weights @ (places - mean) ** 2)
+    middle = quantile(places, weights, 0.75) - quantile(places, weights, 0.25)
+    scale = min(spread, middle / 1.34) or spread
+    width = max(0.9 * scale * effective_size(weights) ** -0.2, 1e-6)
+    grid = np.linspace(0.0, 1.0, 1001)
+    # The kernel is folded back at the ends, as the prior ends there.
+    below = sum(
+        ndtr((grid[:, None] - image) / width) - ndtr((0.0 - image) / width)
+        for image in (places, -places, 2.0 - places)
+    )
+    return float(np.interp(probability, below @ weights, grid))
+
+
+def joint_level(factors: int, level: float = LEVEL) -> float:
+    """Return the level of each factor's region at which all together have `level` (Bonferroni)."""
+    return 1.0 - (1.0 - level) / factors
+
+
+def joint_sets(
+    held: Mapping[str, np.ndarray], prior: np.ndarray, most: int = 5
+) -> list[tuple[tuple[str, ...], float]]:
+    """Return the largest sets of claims that hold together somewhere.
+
+    Returns
+    -------
+    list of (names of the claims that do not hold, share of the prior)
+        Sets that no other set found contains, by their size and then by their share, `most` at
+        the most.
+    """
+    names = list(held)
+    patterns, which = np.unique(np.array(list(held.values())).T, axis=0, return_inverse=True)
+    shares = np.bincount(which.ravel(), prior, len(patterns)) / prior.sum()
+    largest = [
+        i
+        for i, pattern in enumerate(patterns)
+        if not any(np.all(other >= pattern) and other.sum() > pattern.sum() for other in patterns)
+    ]
+    largest.sort(key=lambda i: (-patterns[i].sum(), -shares[i]))
+    return [
+        (tuple(np.array(names)[~patterns[i]].tolist()), float(shares[i])) for i in largest[:most]
+    ]
+
+
+def predictive(held: np.ndarray, found: Fit) -> float:
+    """Return the probability of a claim after a fit, never quite 0 or 1 (Laplace)."""
+    return float((found.weights @ held * found.size + 1.0) / (found.size + 2.0))

@@ -1,0 +1,154 @@
+"""What `config/identify.yaml` states: ranges of the open parameters, designs, wordings."""
+
+import hashlib
+import math
+from pathlib import Path
+from typing import Literal, Self
+
+from pydantic import Field, field_validator, model_validator
+
+from gearmesh import yamlfile
+from gearmesh.schema import Section, validate
+
+KINDS = ("separate", "up", "down")
+"""Kinds of run: each tuning from rest, or from the end of its lower or its higher neighbour."""
+
+FACTORS = {
+    "backlash": "s/y_st",
+    "damping_length": "ℓ/y_st",
+    "body_mass": "m/m_red",
+    "bearing_stiffness": "c_b/C_s",
+    "bearing_damping_ratio": "ζ_b",
+    "friction_coefficient": "f_T",
+    "initial_phase": "p_0",
+    "initial_velocity": "y'(0)/(y_st Ω_s)",
+    "kind": "kind of run",
+    "eccentricity_3": "e_3/y_st",
+    "eccentricity_2": "e_2/y_st",
+    "eccentricity_angle": "Δ",
+}
+"""What is open, and its symbol: lengths in static deflections, masses in m_red."""
+
+
+class Range(Section):
+    """Where a factor may lie."""
+
+    low: float
+    high: float
+    scale: Literal["linear", "log"] = "linear"
+    least: float | None = Field(None, description="value that assumes least, if there is one")
+    reason: str = Field(min_length=1, description="why these ends")
+
+    @model_validator(mode="after")
+    def _is_a_range(self) -> Self:
+        ends = (self.low, self.high, self.low if self.least is None else self.least)
+        if not all(map(math.isfinite, ends)) or self.low >= self.high:
+            raise ValueError(f"low: found {self.low:g}; allowed is less than high, {self.high:g}")
+        if self.scale == "log" and self.low <= 0:
+            raise ValueError(f"low: found {self.low:g}; allowed is more than 0 on a log scale")
+        return self
+
+    def value(self, unit: float) -> float:
+        """Return the value at a place `unit` of the unit interval."""
+        if self.scale == "log":
+            return self.low * (self.high / self.low) ** unit
+        return self.low + (self.high - self.low) * unit
+
+    def unit(self, value: float) -> float:
+        """Return the place of a value in the unit interval."""
+        if self.scale == "log":
+            return math.log(value / self.low) / math.log(self.high / self.low)
+        return (value - self.low) / (self.high - self.low)
+
+
+class Design(Section):
+    """A set of samples.
+
+    `fixed` factors keep one value. `around` names the design whose best samples this one
+    surrounds, in place of filling the whole space.
+    """
+
+    purpose: str = Field(min_length=1)
+    points: int = Field(gt=0, le=2**20)
+    seed: int = Field(ge=0)
+    vary: tuple[str, ...]
+    fixed: dict[str, float | str] = Field(default_factory=dict)
+    around: str | None = None
+
+    @field_validator("points")
+    @classmethod
+    def _fills_evenly(cls, points: int) -> int:
+        if points & (points - 1):
+            raise ValueError(f"found {points}; allowed is a power of 2, for Sobol' points")
+        return points
+
+    @model_validator(mode="after")
+    def _names_factors(self) -> Self:
+        for name in (*self.vary, *self.fixed):
+            if name not in FACTORS:
+                raise ValueError(f"vary: unknown factor {name!r}; allowed are {', '.join(FACTORS)}")
+        if set(self.vary) & set(self.fixed):
+            raise ValueError("fixed: names a factor that varies; allowed is one or the other")
+        kind = self.fixed.get("kind", KINDS[0])
+        if kind not in KINDS:
+            raise ValueError(f"fixed.kind: found {kind!r}; allowed are {', '.join(KINDS)}")
+        return self
+
+
+class Wording(Section):
+    """How the paper words a number, and so how exactly it may be taken.
+
+    A measured value fits in full up to `sure` from the number, and not at all beyond the
+    tolerance of the ledger; in between the weight falls off in a straight line.
+    """
+
+    claim: str
+    quantity: str
+    words: str = Field(min_length=1)
+    sure: float = Field(ge=0)
+    reason: str = Field(min_length=1)
+
+
+class Settings(Section):
+    """The whole of `config/identify.yaml`."""
+
+    ranges: dict[str, Range]
+    designs: dict[str, Design]
+    wordings: tuple[Wording, ...]
+    together: tuple[tuple[str, ...], ...] = Field(
+        (), description="claims that say the same thing, never held out one without the other"
+    )
+    points_per_job: int = Field(gt=0, le=4096)
+
+    def sampling(self, name: str) -> str:
+        """Return a digest of all that decides the samples of a design and how they are cut."""
+        design = self.designs[name]
+        ranges = {
+            f: [self.ranges[f].value(place) for place in (0.0, 0.5, 1.0)]
+            for f in design.vary
+            if f != "kind"
+        }
+        stated = (self.points_per_job, design.model_dump(exclude={"purpose"}), ranges)
+        before = self.sampling(design.around) if design.around else ""
+        return hashlib.sha256(f"{stated} {before}".encode()).hexdigest()
+
+    @model_validator(mode="after")
+    def _is_complete(self) -> Self:
+        for name, design in self.designs.items():
+            if design.around is not None and design.around not in self.designs:
+                raise ValueError(f"designs.{name}.around: no design {design.around!r}")
+            for factor in design.vary:
+                if factor not in self.ranges and factor != "kind":
+                    raise ValueError(f"ranges.{factor}: missing; design {name} varies it")
+        return self
+
+
+def load_settings(path: str | Path) -> Settings:
+    """Read and check the settings.
+
+    Raises
+    ------
+    InputError
+        With one line: file, key, what was found, what is allowed.
+    """
+    return validate(Settings, yamlfile.read_mapping(Path(path)), str(path), {})

@@ -1,0 +1,121 @@
+"""Measure every claim of the ledger on samples of the open parameters."""
+
+from collections.abc import Iterator, Mapping, Sequence
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from gearmesh import casefile
+from gearmesh.claims.checking import MEASURES
+from gearmesh.claims.evidence import Evidence, NotInStudy
+from gearmesh.claims.fig6 import LESS, MORE, NU_OF_THE_CROSSING
+from gearmesh.identification import store
+from gearmesh.identification.courses import SampledCourses, look
+from gearmesh.identification.design import Sample, parameters_of, samples
+from gearmesh.identification.settings import Settings
+from gearmesh.parameters import Parameters
+from gearmesh.thresholds import NONLINEAR, STROBED_AT, locate_on
+
+VARIANTS = (
+    *(f"{letter}-lubricant" for letter in ("b", *NONLINEAR)),
+    "b-material",
+    "b-both",
+    *(f"{letter}-{symbol}" for letter in NONLINEAR for symbol in ("material", "both")),
+    "c-material-5x",
+)
+"""Variants of which the paper claims something that depends on the open parameters."""
+
+TIME_COURSES = (
+    *(("c-lubricant", nu) for nu in STROBED_AT),
+    (LESS, NU_OF_THE_CROSSING),
+    (MORE, NU_OF_THE_CROSSING),
+)
+"""Cases whose time course a claim looks at."""
+
+_GROUP = 16
+
+Measured = dict[str, float]
+"""Column such as ``F2.3|near 0.66|c-lubricant`` -> what was measured; NaN if it does not exist."""
+
+
+def tested_claims() -> list[str]:
+    """Return the ids of the claims that may depend on the open parameters."""
+    return [name for name in MEASURES if not name.startswith("P")]
+
+
+def compute(
+    settings: Settings, study: Parameters, name: str, index: int, places: np.ndarray
+) -> xr.Dataset:
+    """Measure the claims on one batch of a design.
+
+    Parameters
+    ----------
+    settings : Settings
+        They say what the design varies, and how it is cut into batches.
+    study : Parameters
+        All parameters that the design leaves alone.
+    name : str
+        The design.
+    index : int
+        The batch, from 0.
+    places : ndarray, shape (points, varied factors)
+        Places of the whole design in the unit cube.
+    """
+    design = settings.designs[name]
+    size = settings.points_per_job
+    part = places[index * size : (index + 1) * size]
+    drawn = samples(part, design, settings, study)
+    return store.dataset(name, design, part, drawn, list(measure(drawn, study)))
+
+
+def measure(drawn: Sequence[Sample], study: Parameters) -> Iterator[Measured]:
+    """Yield what the claims of the ledger measure on each sample.
+
+    Parameters
+    ----------
+    drawn : sequence of Sample
+        Values of the open parameters.
+    study : Parameters
+        All other parameters.
+    """
+    for first in range(0, len(drawn), _GROUP):
+        group = drawn[first : first + _GROUP]
+        courses = [{name: SampledCourses(s, study, name) for name in VARIANTS} for s in group]
+        look([c for of_sample in courses for c in of_sample.values()])
+        for sample, of_sample in zip(group, courses, strict=True):
+            yield measure_courses(of_sample, parameters_of(sample, study))
+
+
+def measure_courses(courses: Mapping[str, SampledCourses], parameters: Parameters) -> Measured:
+    """Return what the claims measure on the courses of one sample."""
+    evidence = Evidence(
+        parameters=parameters,
+        thresholds=locate_on(courses, parameters),
+        time_courses=dict(_time_courses(courses, parameters)),
+    )
+    found: Measured = {}
+    for claim in tested_claims():
+        try:
+            measured, _ = MEASURES[claim](evidence)
+        except (NotInStudy, ArithmeticError, ValueError):
+            # What the claim speaks of does not exist in this motion.
+            continue
+        found.update(_columns(claim, measured))
+    return found
+
+
+def _time_courses(courses, parameters) -> Iterator[tuple[tuple[str, float], Mapping]]:
+    for name, nu in TIME_COURSES:
+        response = courses[name].time_course(nu)
+        if response.status == "ok":
+            record = casefile.record(response, parameters)
+            yield (name, nu), {key: xr.Variable(("",) * a.ndim, a) for key, a in record.items()}
+
+
+def _columns(name: str, measured: Any) -> Iterator[tuple[str, float]]:
+    if isinstance(measured, Mapping):
+        for key, value in measured.items():
+            yield from _columns(f"{name}|{key}", value)
+    else:
+        yield name, float("nan") if measured is None else float(measured)

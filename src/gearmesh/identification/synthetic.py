@@ -1,0 +1,123 @@
+"""Papers whose parameters are known, to see whether the inference finds them.
+
+A synthetic paper states what the model measures at a sample that no inference has seen, as exactly
+as the real one does: numbers rounded so that the rounding is the ledger's tolerance, orders and
+shapes as yes or no, and what does not exist as absent.
+"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from gearmesh.identification.inference import Fit, fit, joint_level, region
+from gearmesh.identification.wording import Columns, Statement, columns_of
+
+
+def paper(truth: Mapping[str, float], stated: Sequence[Statement]) -> dict[str, Statement | bool]:
+    """Write the paper of one sample.
+
+    Parameters
+    ----------
+    truth : mapping of str to float
+        Column -> what the model measures there.
+    stated : sequence of Statement
+        What the real paper states.
+
+    Returns
+    -------
+    dict
+        Column -> rounded number as a statement; or whether what the real paper says of it holds.
+        Numbers that do not exist are False, as what is said of them cannot hold.
+    """
+    written: dict[str, Statement | bool] = {}
+    for statement in stated:
+        for column in columns_of(statement, truth):
+            value = truth[column]
+            if statement.is_number and np.isfinite(value):
+                reach = 0.5 * (statement.high - statement.low)
+                number = round(value / (2.0 * reach)) * 2.0 * reach
+                ends = number - reach, number + reach
+                written[column] = Statement(statement.claim, statement.quantity, *ends, *ends)
+            elif statement.is_number:
+                written[column] = False
+            else:
+                written[column] = bool(statement.weight(np.array([value]))[0])
+    return written
+
+
+def evidence(
+    written: Mapping[str, Statement | bool], stated: Sequence[Statement], measured: Columns
+) -> list[np.ndarray]:
+    """Return how well samples fit a synthetic paper, column by column."""
+    found = []
+    for statement in stated:
+        for column in columns_of(statement, written):
+            says, values = written[column], measured[column]
+            if isinstance(says, Statement):
+                found.append(says.weight(values))
+            elif statement.is_number:
+                found.append((~np.isfinite(values)).astype(float))
+            else:
+                found.append(((statement.weight(values) > 0) == says).astype(float))
+    return found
+
+
+@dataclass(frozen=True)
+class Recovery:
+    """What an inference makes of one synthetic paper.
+
+    Attributes
+    ----------
+    inside : dict of str to bool
+        Factor -> whether its stated value lies in the region; the regions are such that all
+        should hold together with the probability of a region.
+    width : dict of str to float
+        Factor -> length of its region, as a share of the prior's.
+    found : Fit
+        The fit.
+    """
+
+    inside: dict[str, bool]
+    width: dict[str, float]
+    found: Fit
+
+    @property
+    def recovered(self) -> bool:
+        """Whether every stated value lies in its region."""
+        return all(self.inside.values())
+
+
+def recover(
+    truth: Mapping[str, float],
+    place: Mapping[str, float],
+    stated: Sequence[Statement],
+    measured: Columns,
+    places: Mapping[str, np.ndarray],
+    prior: np.ndarray,
+) -> Recovery:
+    """Write the paper of a truth, and infer its parameters.
+
+    Parameters
+    ----------
+    truth : mapping of str to float
+        Column -> what the model measures at the truth.
+    place : mapping of str to float
+        Factor -> place of the truth in the unit cube.
+    stated : sequence of Statement
+        What the real paper states.
+    measured : mapping of str to ndarray, shape (n_samples,)
+        Column -> what the model measures at the samples.
+    places : mapping of str to ndarray, shape (n_samples,)
+        Factor -> places of the samples.
+    prior : ndarray, shape (n_samples,)
+        Weights that make the samples an even design.
+    """
+    found = fit(evidence(paper(truth, stated), stated, measured), prior)
+    level = joint_level(len(place))
+    regions = {name: region(places[name], found.weights, level) for name in place}
+    return Recovery(
+        {name: low <= place[name] <= high for name, (low, high) in regions.items()},
+        {name: high - low for name, (low, high) in regions.items()},
+        found,
+    )

@@ -1,0 +1,68 @@
+# Infer what the paper does not print: samples of the open parameters, in batches; focused designs
+# surround the best of what came before. Nothing here is part of the default target, which reads
+# the committed table config/identified.yaml.
+from gearmesh import provenance
+from gearmesh.identification import layout
+from gearmesh.identification.design import left_alone
+from gearmesh.identification.settings import load_settings
+
+DESIGNS = load_settings(layout.SETTINGS)
+MEASURE = pipeline.script("identify_batch")
+PLACES = pipeline.script("identify_places")
+GATHER = pipeline.script("identify_dataset")
+
+
+for name, stated in DESIGNS.designs.items():
+
+    rule:
+        name:
+            f"identify_{name}"
+        input:
+            pipeline.sources(MEASURE),
+            layout.places_file(name) if stated.around else [],
+        output:
+            layout.FOLDER / name / r"batch-{index,\d+}.nc",
+        resources:
+            mem_mb=1500,
+            runtime=30,
+        params:
+            recipe=left_alone(stated, PLAN.study.parameters),
+            versions=str(provenance.versions()),
+            settings=str(layout.SETTINGS),
+            stated=DESIGNS.sampling(name),
+            design=name,
+        shell:
+            "{PYTHON} {MEASURE} {params.settings} {STUDY} {params.design} {wildcards.index} {output}"
+
+    if stated.around:
+
+        rule:
+            name:
+                f"identify_{name}_places"
+            input:
+                pipeline.sources(PLACES),
+                paths.CLAIMS,
+                batches=layout.batch_files(DESIGNS, *layout.family(DESIGNS, stated.around)),
+            output:
+                layout.places_file(name),
+            params:
+                settings=str(layout.SETTINGS),
+                stated=DESIGNS.sampling(name),
+                design=name,
+            shell:
+                "{PYTHON} {PLACES} {params.settings} {params.design} {input.batches}"
+
+
+rule identification_dataset:
+    input:
+        sources=pipeline.sources(GATHER),
+        batches=layout.batch_files(DESIGNS, *DESIGNS.designs),
+    output:
+        layout.DATASET,
+    shell:
+        "{PYTHON} {GATHER} {input.batches}"
+
+
+rule identify:
+    input:
+        layout.DATASET,

@@ -1,0 +1,29 @@
+"""Draw the samples of a focused design around the best ones before it."""
+
+import argparse
+from pathlib import Path
+
+from gearmesh import paths
+from gearmesh.claims import load_ledger
+from gearmesh.identification import focus, layout, store
+from gearmesh.identification.settings import load_settings
+from gearmesh.identification.survey import tested_claims
+from gearmesh.job import job
+
+
+def main() -> None:
+    """Run as a job."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("settings", type=Path)
+    parser.add_argument("design")
+    parser.add_argument("batches", type=Path, nargs="+")
+    options = parser.parse_args()
+    with job("identification"):
+        design = load_settings(options.settings).designs[options.design]
+        ledger = [c for c in load_ledger(paths.CLAIMS) if c.id in tested_claims()]
+        cloud = focus.around(store.read(*options.batches), design, ledger)
+        focus.write_cloud(layout.places_file(options.design), cloud, design)
+
+
+if __name__ == "__main__":
+    main()
