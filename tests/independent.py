@@ -265,7 +265,7 @@ def energy(problem: Problem, state: np.ndarray, level: float) -> float:
     return kinetic + bearings + 0.5 * level * depth**2 - (q[0] + q[1])
 
 
-def period_map_trace(strobes: np.ndarray) -> float:
-    """Return the trace of the map (y, y') -> (y, y') over a period from four strobes in a row."""
-    steps = np.diff(strobes[:4], axis=0)
-    return float(np.trace(steps[1:].T @ np.linalg.inv(steps[:-1].T)))
+def period_map_trace(starts: np.ndarray, ends: np.ndarray) -> float:
+    """Return the trace of an affine map from three points (y, y') and where they go, (3, 2)."""
+    before, after = np.diff(starts, axis=0).T, np.diff(ends, axis=0).T
+    return float(np.trace(after @ np.linalg.inv(before)))

@@ -298,7 +298,7 @@ def _find_event(case, stretch, mode, state, step, series, rest, scaled, table):
             end, event = signs, kind
     passed = level(case, mode.regime, mode.direction)
     y = evaluate(series[Y], case.order, end * step)
-    if mode.direction * (y - passed) >= 0.0:
+    if mode.direction != 0.0 and mode.direction * (y - passed) >= 0.0:
         power = step
         scaled[0] = series[Y, 0] - passed
         for k in range(1, case.order + 1):
