@@ -6,7 +6,7 @@ takes text with a unit and holds a float in the unit that the field states.
 
 import difflib
 from collections.abc import Iterable, Mapping, Sequence
-from typing import Any, ClassVar, NamedTuple, TypeVar, get_args
+from typing import Any, ClassVar, NamedTuple, TypeVar, get_args, get_origin
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError, ValidationInfo, field_validator
 
@@ -160,11 +160,13 @@ def _slips(model: type[BaseModel], data: object, error: ValidationError) -> list
 
 def _model_at(model: type[BaseModel], loc: Sequence[int | str]) -> type[BaseModel] | None:
     """Return the section at a key, None if there is a value there."""
-    for part in loc:
+    inside = iter(loc)
+    for part in inside:
         info = model.model_fields.get(str(part))
         types = (info.annotation, *get_args(info.annotation)) if info else ()
         inner = [t for t in types if isinstance(t, type) and issubclass(t, BaseModel)]
-        if not inner:
+        holds_many = info is not None and get_origin(info.annotation) in (dict, tuple)
+        if not inner or (holds_many and next(inside, None) is None):
             return None
         model = inner[0]
     return model

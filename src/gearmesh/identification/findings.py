@@ -17,8 +17,8 @@ from gearmesh.identification.wording import (
     weight_of_claims,
 )
 
-SURVEY, NATURAL, TRUTH = "survey", "natural", "truth"
-"""Even designs: the plausible space, the natural reading of the paper, synthetic papers."""
+SURVEY, NATURAL, TRUTH, RUN_OUT = "survey", "natural", "truth", "run_out"
+"""Even designs: the plausible space, the natural reading, synthetic papers, run-out."""
 
 CUTS = 50
 """Random cuts of the claims into two halves."""
@@ -154,6 +154,7 @@ def findings(analysis: Analysis) -> dict[str, object]:
         "sensitivity": sensitivities(analysis),
         "prediction": predictions(analysis, survey),
         "recovery": recoveries(analysis, survey),
+        "run-out": run_out(analysis),
     }
 
 
@@ -317,6 +318,21 @@ def recoveries(analysis: Analysis, family: Family) -> dict[str, object]:
         "samples": _rounded(float(np.median([one.found.size for one in made]))),
         "forgiven": _rounded(float(np.median([one.found.forgiven for one in made]))),
     }
+
+
+def run_out(analysis: Analysis) -> dict[str, object]:
+    """Return for each claim up to which eccentricity (the larger one, in y_st) it holds."""
+    samples = analysis.samples.of(RUN_OUT)
+    larger = np.maximum(samples.values["eccentricity_3"], samples.values["eccentricity_2"])
+    found = {}
+    for name, held in analysis.held(samples).items():
+        fails = larger[~held]
+        below = larger[larger < fails.min()] if fails.size else larger
+        found[name] = {
+            "share": _rounded(float(held.mean())),
+            "holds up to": _rounded(float(below.max())) if below.size else 0.0,
+        }
+    return found
 
 
 def _rounded(value: float) -> float:

@@ -25,6 +25,8 @@ ENOUGH = 40
 LEVEL = 0.95
 """Probability of the regions."""
 
+_GRID = 401
+
 
 def effective_size(weights: np.ndarray) -> float:
     """Return the number of equal samples that weights are worth (Kish)."""
@@ -95,9 +97,23 @@ def region(places: np.ndarray, weights: np.ndarray, level: float = LEVEL) -> tup
     The samples are smoothed by a kernel of Silverman's width first: a few of them say nothing
     about the ends of a region.
     """
-    ends = 0.5 * (1 - level), 0.5 * (1 + level)
-    low, high = (_quantile(places, weights, p) for p in ends)
-    return low, high
+    kept = weights > 0
+    places, weights = places[kept], weights[kept] / weights[kept].sum()
+    grid = np.linspace(0.0, 1.0, _GRID)
+    below = _smoothed(places, weights, grid)
+    low, high = np.interp([0.5 * (1 - level), 0.5 * (1 + level)], below, grid)
+    return float(low), float(high)
+
+
+def _smoothed(places: np.ndarray, weights: np.ndarray, grid: np.ndarray) -> np.ndarray:
+    """Return the smoothed distribution function; the kernel is folded back at both ends."""
+    spread = np.sqrt(weights @ (places - weights @ places) ** 2)
+    middle = quantile(places, weights, 0.75) - quantile(places, weights, 0.25)
+    scale = min(spread, middle / 1.34) or spread
+    width = max(0.9 * scale * effective_size(weights) ** -0.2, 1e-6)
+    images = np.concatenate([places, -places, 2.0 - places])
+    below = ndtr((grid[:, None] - images) / width) @ np.tile(weights, 3)
+    return below - below[0]
 
 
 def quantile(places: np.ndarray, weights: np.ndarray, probability: float) -> float:
@@ -106,23 +122,6 @@ def quantile(places: np.ndarray, weights: np.ndarray, probability: float) -> flo
     cumulative = np.cumsum(weights[order])
     middle = cumulative - 0.5 * weights[order]
     return float(np.interp(probability * cumulative[-1], middle, places[order]))
-
-
-def _quantile(places: np.ndarray, weights: np.ndarray, probability: float) -> float:
-    kept = weights > 0
-    places, weights = places[kept], weights[kept] / weights[kept].sum()
-    mean = weights @ places
-    spread = np.sqrt(weights @ (places - mean) ** 2)
-    middle = quantile(places, weights, 0.75) - quantile(places, weights, 0.25)
-    scale = min(spread, middle / 1.34) or spread
-    width = max(0.9 * scale * effective_size(weights) ** -0.2, 1e-6)
-    grid = np.linspace(0.0, 1.0, 1001)
-    # The kernel is folded back at the ends, as the prior ends there.
-    below = sum(
-        ndtr((grid[:, None] - image) / width) - ndtr((0.0 - image) / width)
-        for image in (places, -places, 2.0 - places)
-    )
-    return float(np.interp(probability, below @ weights, grid))
 
 
 def joint_level(factors: int, level: float = LEVEL) -> float:

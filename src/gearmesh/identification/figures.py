@@ -1,0 +1,142 @@
+"""Figures of what the paper does not print: the regions of its parameters, and their say."""
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.colors import LinearSegmentedColormap
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+from matplotlib.patches import Patch
+
+from gearmesh.figures import palette
+from gearmesh.figures.canvas import WIDTH, styled
+from gearmesh.identification.settings import Range
+
+SYMBOLS = {
+    "backlash": "$s/y_{st}$",
+    "damping_length": "$\\ell/y_{st}$",
+    "body_mass": "$m/m_{red}$",
+    "bearing_stiffness": "$c_b/C_s$",
+    "bearing_damping_ratio": "$\\zeta_b$",
+    "friction_coefficient": "$f_T$",
+    "initial_phase": "$p_0$",
+    "initial_velocity": "$y'(0)$",
+    "kind": "run",
+}
+
+_TICKS = {
+    "backlash": (2, 4, 8, 15),
+    "damping_length": (0.1, 0.25, 0.5, 1, 2),
+    "body_mass": (1, 10, 100, 1000),
+    "bearing_stiffness": (0.1, 1, 10, 100),
+    "bearing_damping_ratio": (0.005, 0.01, 0.03, 0.1),
+    "friction_coefficient": (0, 0.05, 0.1),
+    "initial_phase": (0, 0.25, 0.5, 0.75, 1),
+    "initial_velocity": (-1, 0, 1),
+}
+
+
+@styled
+def draw_regions(
+    found: Mapping[str, Any], ranges: Mapping[str, Range], stated: Mapping[str, float]
+) -> Figure:
+    """Draw where each parameter may lie, by the claims that hold together.
+
+    Parameters
+    ----------
+    found : mapping
+        ``regions`` of the findings.
+    ranges : mapping of str to Range
+        Ranges of the plausible space.
+    stated : mapping of str to float
+        Values of the study, shown as a line.
+    """
+    factors = [name for name in found["plausible"]["factors"] if name != "kind"]
+    figure = Figure(figsize=(WIDTH, 0.62 * len(factors) + 0.7), layout="constrained")
+    grid = figure.subplots(len(factors), 1)
+    for axes, factor in zip(grid, factors, strict=True):
+        _draw_factor(axes, factor, found, ranges[factor])
+        if factor in stated:
+            axes.axvline(ranges[factor].unit(stated[factor]), color=palette.RED, lw=1.1)
+    handles = [
+        Patch(color=palette.BLUE, alpha=0.25, lw=0, label="95 %"),
+        Patch(color=palette.BLUE, alpha=0.75, lw=0, label="50 %"),
+        Line2D([], [], color=palette.RED, lw=1.1, label="this study"),
+    ]
+    figure.legend(handles=handles, loc="outside lower center", ncols=3)
+    return figure
+
+
+def _draw_factor(axes: Axes, factor: str, found: Mapping[str, Any], bounds: Range) -> None:
+    for row, reading in enumerate(("natural", "plausible")):
+        region = found[reading]["factors"].get(factor)
+        if region is None:
+            continue
+        for ends, alpha in ((region["region"], 0.25), (region["half"], 0.75)):
+            low, high = (bounds.unit(end) for end in ends)
+            axes.barh(row, high - low, left=low, height=0.56, color=palette.BLUE, alpha=alpha, lw=0)
+    axes.set_xlim(0.0, 1.0)
+    axes.set_ylim(-0.6, 1.6)
+    axes.set_yticks([0, 1], ["natural", "all"])
+    axes.tick_params(axis="y", length=0)
+    ticks = [tick for tick in _TICKS[factor] if bounds.low <= tick <= bounds.high]
+    axes.set_xticks([bounds.unit(tick) for tick in ticks], [f"{tick:g}" for tick in ticks])
+    axes.set_title(SYMBOLS[factor], pad=2)
+
+
+@styled
+def draw_sensitivity(found: Mapping[str, Any]) -> Figure:
+    """Draw which parameter has a say in which threshold: PAWN indices above chance.
+
+    Parameters
+    ----------
+    found : mapping
+        ``sensitivity`` of the findings: threshold -> factor -> index.
+    """
+    rows, factors = list(found), list(next(iter(found.values())))
+    index = np.array([[found[row][factor]["index"] for factor in factors] for row in rows])
+    chance = np.array([[found[row][factor]["chance"] for factor in factors] for row in rows])
+    shown = np.where(index > chance, index, np.nan)
+    figure = Figure(figsize=(WIDTH, 0.21 * len(rows) + 0.9), layout="constrained")
+    axes = figure.subplots()
+    shades = LinearSegmentedColormap.from_list("say", ["#eef5fa", palette.BLUE])
+    axes.imshow(shown, cmap=shades, vmin=0.0, vmax=0.7, aspect="auto")
+    for i, j in np.argwhere(np.isfinite(shown)):
+        ink = "white" if shown[i, j] > 0.4 else palette.INK
+        axes.text(j, i, f"{shown[i, j]:.2f}", ha="center", va="center", color=ink, fontsize=7)
+    axes.set_xticks(range(len(factors)), [SYMBOLS[name] for name in factors])
+    axes.set_yticks(range(len(rows)), [threshold_label(row) for row in rows])
+    axes.tick_params(length=0, top=False, right=False)
+    axes.tick_params(axis="x", labeltop=True, labelbottom=False)
+    return figure
+
+
+_MARKS = {"lubricant": "•", "material": "□", "both": "×"}
+_WORDS = {
+    "F2.1": "step left",
+    "F2.2": "□ against ×",
+    "F2.3|near 0.66": "first jump",
+    "F2.3|near 0.8": "second jump",
+    "F2.5|beyond the jump": "peak beyond the jump",
+    "F2.6": "distance from inverse mesh",
+    "F3.1|y_max": "onset of the bifurcation",
+    "F3.2|end": "end of the loops",
+    "F3.4|ratio": "disorder below 0.8",
+    "F4.1|0.60": "unsteadiness at 0.60",
+    "F4.1|1.05": "unsteadiness at 1.05",
+    "F4.1|1.20": "unsteadiness at 1.20",
+    "F6.1|from": "more damped higher: from",
+    "F6.1|to": "more damped higher: to",
+    "F6.2|5k": "end of the loops, 5k",
+}
+
+
+def threshold_label(column: str) -> str:
+    """Return the words for a measured value, with its variant."""
+    name = next(name for name in _WORDS if column == name or column.startswith(f"{name}|"))
+    variant = column.removeprefix(name).lstrip("|")
+    letter, _, place = variant.partition("-")
+    mark = f", {letter}-{_MARKS[place]}" if place in _MARKS else f", {variant}" if variant else ""
+    return f"{_WORDS[name]}{mark} ({name.partition('|')[0]})"

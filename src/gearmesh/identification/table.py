@@ -1,0 +1,43 @@
+"""The findings as a small file: written by the identification, read by report and notebook."""
+
+from pathlib import Path
+from typing import Any
+
+import yaml
+
+from gearmesh import yamlfile
+from gearmesh.errors import InputError
+from gearmesh.identification.layout import IDENTIFIED
+from gearmesh.job import write_text
+
+HEADER = """\
+# What the claims of the paper say about what it does not print; docs/identification.md tells how
+# it was found. Made by `make identify` from config/identify.yaml and config/claims.yaml: do not
+# edit. Shares are of the plausible space, regions have probability 0.95.
+"""
+
+Findings = dict[str, Any]
+"""See `gearmesh.identification.findings.findings`."""
+
+
+def write(path: Path, findings: Findings) -> None:
+    """Write findings, the same bytes for the same findings."""
+    text = yaml.safe_dump(
+        findings, sort_keys=False, allow_unicode=True, width=100, default_flow_style=None
+    )
+    write_text(path, HEADER + text)
+
+
+def read(path: Path = IDENTIFIED) -> Findings:
+    """Read findings.
+
+    Raises
+    ------
+    InputError
+        If the file is missing, or not one of findings.
+    """
+    found = yamlfile.read_mapping(path)
+    for section in ("samples", "claims", "joint", "regions", "sensitivity", "recovery"):
+        if not isinstance(found.get(section), dict):
+            raise InputError(f"{path}: {section}: missing; run make identify")
+    return found
