@@ -29,6 +29,17 @@ PYTHON, STUDY = pipeline.python(), str(PLAN.config)
 report: "workflow/report/workflow.rst"
 
 
+localrules:
+    all,
+    data,
+    datasets,
+    fig1,
+    printed,
+    ledger,
+    report,
+    verdict,
+
+
 rule all:
     input:
         PLAN.computed,

@@ -1,9 +1,11 @@
 """What tests share: the root of the project, and the study of the paper."""
 
+import time
 from pathlib import Path
 
 import pytest
 from hypothesis import settings
+from project import Project
 from small_run import compute
 
 from gearmesh.configuration import Study, load_study
@@ -42,3 +44,22 @@ def small_run(small_study: Study, tmp_path_factory: pytest.TempPathFactory) -> P
     root = tmp_path_factory.mktemp("small-run")
     compute(small_study, root)
     return root
+
+
+@pytest.fixture(scope="session")
+def smoke(tmp_path_factory: pytest.TempPathFactory) -> Project:
+    """The smoke study, run to its end by the pipeline."""
+    project = Project.create(tmp_path_factory.mktemp("smoke") / "project", "config/smoke.yaml")
+    project.output = project.run("all").stdout
+    return project
+
+
+@pytest.fixture(scope="session")
+def tiny(tmp_path_factory: pytest.TempPathFactory) -> Project:
+    """A study of 14 cases with its datasets, made by the pipeline."""
+    project = Project.create(tmp_path_factory.mktemp("tiny") / "project", "config/tiny.yaml")
+    start = time.monotonic()
+    finished = project.run("data")
+    project.seconds = time.monotonic() - start
+    assert finished.returncode == 0, finished.stdout
+    return project

@@ -20,7 +20,7 @@ title: A few cases
 study:
   nu: {start: 0.6, stop: 1.2, step: 0.2}
   variants: [a-conservative, c-material, c-lubricant]
-  cases_per_job: 4
+  cases_per_job: 7
   strong_damping: {variant: c-material, factor: 5, nu: {start: 0.6, stop: 0.8, step: 0.2}}
   time_courses: null
 """
@@ -76,18 +76,18 @@ class Project:
                 shutil.copy2(source, folder / source.name)
         return Project(folder, self.config)
 
-    def command(self, *arguments: str, cores: int = 2) -> list[str]:
+    def command(self, *arguments: str, cores: int = 2, profile: str = PROFILE) -> list[str]:
         """Return the command line of a run."""
         return [
-            *(sys.executable, "-m", "snakemake", "--profile", PROFILE),
+            *(sys.executable, "-m", "snakemake", "--profile", profile),
             *("--cores", str(cores), "--config", f"study={self.config}", "--"),
             *arguments,
         ]
 
-    def run(self, *arguments: str, cores: int = 2) -> subprocess.CompletedProcess:
-        """Run targets to the end."""
+    def run(self, *arguments: str, **settings: int | str) -> subprocess.CompletedProcess:
+        """Run targets to the end; settings are those of `command`."""
         return subprocess.run(
-            self.command(*arguments, cores=cores),
+            self.command(*arguments, **settings),
             cwd=self.folder,
             env=self.environment,
             stdout=subprocess.PIPE,

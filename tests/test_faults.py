@@ -13,21 +13,12 @@ import sys
 import time
 from pathlib import Path
 
+import numpy as np
 import pytest
+import xarray as xr
 from project import Project, end
 
 KILLS = 10
-
-
-@pytest.fixture(scope="module")
-def tiny(tmp_path_factory) -> Project:
-    """A tiny study with its cases and datasets, undisturbed."""
-    project = Project.create(tmp_path_factory.mktemp("tiny") / "project", "config/tiny.yaml")
-    start = time.monotonic()
-    finished = project.run("data")
-    project.seconds = time.monotonic() - start
-    assert finished.returncode == 0, finished.stdout
-    return project
 
 
 @pytest.fixture
@@ -148,15 +139,29 @@ def test_an_unwritable_compilation_cache_changes_nothing(tiny, fresh, tmp_path):
     for folder in fresh.path("src").rglob("__pycache__"):
         shutil.rmtree(folder)
         folder.write_text("no folder")
-    blocked = tmp_path / "blocked"
-    blocked.write_text("no folder")
-    fresh.environment |= {"HOME": str(blocked), "XDG_CACHE_HOME": str(blocked)}
-    fresh.environment["PYTHONDONTWRITEBYTECODE"] = "1"
-    fresh.edit("config/tiny.yaml", "cases_per_job: 4", "cases_per_job: 100")
+    cache = tmp_path / "cache"
+    cache.mkdir()
+    (cache / "numba").write_text("no folder")
+    fresh.environment |= {"XDG_CACHE_HOME": str(cache)}
+    fresh.edit("config/tiny.yaml", "cases_per_job: 7", "cases_per_job: 100")
     finished = fresh.run("data")
     assert finished.returncode == 0, finished.stdout
     results = {n: d for n, d in fresh.results().items() if not n.startswith("batches/")}
     assert results.items() <= tiny.results().items()
+
+
+def test_a_case_that_fails_stops_nothing_else(fresh):
+    """Damping so strong that no step is small enough."""
+    fresh.edit("config/paper.yaml", "damping: 3.9537 N s/mm", "damping: 1e6 N s/mm")
+    fresh.edit("config/paper.yaml", "damping_length: ", "damping_length: 1e-6 mm # ")
+    finished = fresh.run("data")
+    assert finished.returncode == 0, finished.stdout
+    assert "not integrated" in finished.stdout
+    resonance = xr.open_dataset(fresh.path("results/datasets/resonance.nc"))
+    status = resonance["status"].sel(variant=["a-conservative", "c-material"]).values
+    assert (status[0] == 0).all()
+    assert (status[1] > 0).all()
+    assert np.isnan(resonance["y_max"].sel(variant="c-material")).all()
 
 
 def test_a_kernel_that_dies_leaves_the_notebook_and_is_told(fresh):

@@ -8,15 +8,6 @@ import yaml
 from project import Project
 
 FIGURES = [f"fig{number}" for number in range(2, 8)]
-SMOKE = "config/smoke.yaml"
-
-
-@pytest.fixture(scope="session")
-def smoke(tmp_path_factory) -> Project:
-    """The small study, run to its end."""
-    project = Project.create(tmp_path_factory.mktemp("smoke") / "project", SMOKE)
-    project.output = project.run("all").stdout
-    return project
 
 
 @pytest.fixture

@@ -11,15 +11,6 @@ CASE = "results/cases/c-lubricant/nu-0.8000.nc"
 DATASET = "results/datasets/bifurcation.nc"
 
 
-@pytest.fixture(scope="session")
-def tiny(tmp_path_factory) -> Project:
-    """A study of 14 cases with its datasets."""
-    project = Project.create(tmp_path_factory.mktemp("tiny") / "project", "config/tiny.yaml")
-    finished = project.run("data")
-    assert finished.returncode == 0, finished.stdout
-    return project
-
-
 @pytest.fixture
 def copied(tiny: Project, tmp_path: Path) -> Project:
     return tiny.copy(tmp_path / "project")
@@ -111,27 +102,27 @@ def test_another_factor_of_the_strong_damping_computes_its_cases(copied):
 
 
 def test_another_size_of_batches_computes_nothing_and_changes_no_byte(tiny, copied):
-    copied.edit("config/tiny.yaml", "cases_per_job: 4", "cases_per_job: 3")
+    copied.edit("config/tiny.yaml", "cases_per_job: 7", "cases_per_job: 4")
     assert counts(copied) == (0, 14)
     assert without_batches(copied) == without_batches(tiny)
 
 
 def test_cores_and_batches_change_no_byte_of_a_fresh_run(tiny, tmp_path):
     fresh = Project.create(tmp_path / "fresh", "config/tiny.yaml")
-    fresh.edit("config/tiny.yaml", "cases_per_job: 4", "cases_per_job: 100")
+    fresh.edit("config/tiny.yaml", "cases_per_job: 7", "cases_per_job: 100")
     assert fresh.run("data", cores=1).returncode == 0
     assert without_batches(fresh) == without_batches(tiny)
 
 
 def test_a_study_without_case_files_gives_the_same_datasets(tiny, tmp_path):
     fresh = Project.create(tmp_path / "fresh", "config/tiny.yaml")
-    fresh.edit("config/tiny.yaml", "cases_per_job: 4", "cases_per_job: 4\n  case_files: false")
+    fresh.edit("config/tiny.yaml", "cases_per_job: 7", "cases_per_job: 7\n  case_files: false")
     assert counts(fresh) == (14, 0)
     assert without_batches(fresh) == {
         name: digest for name, digest in tiny.results().items() if name.startswith("datasets/")
     }
     fresh.path("results/batches/batch-0001.nc").unlink()
-    assert counts(fresh) == (5, 0)
+    assert counts(fresh) == (7, 0)
 
 
 def without_batches(project: Project) -> dict[str, str]:
