@@ -17,7 +17,7 @@ from pathlib import Path
 from benchmarks import table, work_precision
 from benchmarks.cases import SWEEP, singles, sweeps
 from benchmarks.measure import AIM, SHARE, Accuracy, Contest, accuracy, sparse, timed
-from benchmarks.peers import OURS, OURS_WITHOUT_SAMPLES, PEERS, Solve, Solver
+from benchmarks.peers import OURS, OURS_WITH_LESS, PEERS, Solve, Solver
 
 ROUNDS = 7
 SLOW_ROUNDS = 3
@@ -56,30 +56,7 @@ def main() -> int:
     }
 
     solvers, left_out = _load()
-    points, entries = [], []
-    for solver, solve in solvers:
-        cases, known = (sparse(runs), sparse(of_runs)) if solver.slow else (runs, of_runs)
-        found = {}
-        for setting in solver.settings:
-            _say(f"{solver.name}: {solver.setting} {setting:g}")
-            solve(next(iter(cases.values()))[:1], setting)  # compiles
-            outcomes, spent = timed(solve, setting, cases)
-            found[setting] = accuracy(outcomes, known)
-            points.append(work_precision.Point(solver.name, setting, spent, found[setting].most))
-        entries += _entries(solver, solve, found)
-    ours = next(entry for entry in entries if entry.solver is OURS)
-    _, without_samples = _load_one(OURS_WITHOUT_SAMPLES)
-    entries.insert(
-        1,
-        Entry(
-            OURS_WITHOUT_SAMPLES.name,
-            OURS_WITHOUT_SAMPLES,
-            without_samples,
-            ours.setting,
-            accuracy(timed(without_samples, ours.setting, runs)[0], of_runs),
-        ),
-    )
-
+    points, entries = _scan(solvers, runs, of_runs)
     _say("times")
     rows = _rows(entries, runs, one_each)
     results = {
@@ -105,15 +82,32 @@ def _load() -> tuple[list[tuple[Solver, Solve]], dict[str, str]]:
     loaded, left_out = [], {}
     for solver in (OURS, *PEERS):
         try:
-            loaded.append(_load_one(solver))
+            loaded.append((solver, solver.load()))
         except ImportError as error:
             left_out[solver.name] = str(error)
             _say(f"left out: {solver.name} ({error})\n")
     return loaded, left_out
 
 
-def _load_one(solver: Solver) -> tuple[Solver, Solve]:
-    return solver, solver.load()
+def _scan(solvers, runs, of_runs) -> tuple[list[work_precision.Point], list[Entry]]:
+    """Measure every solver at all its settings; return those points, and the rows to time."""
+    points, entries = [], []
+    for solver, solve in solvers:
+        cases, known = (sparse(runs), sparse(of_runs)) if solver.slow else (runs, of_runs)
+        found = {}
+        for setting in solver.settings:
+            _say(f"{solver.name}: {solver.setting} {setting:g}")
+            solve(next(iter(cases.values()))[:1], setting)  # compiles
+            outcomes, spent = timed(solve, setting, cases)
+            found[setting] = accuracy(outcomes, known)
+            points.append(work_precision.Point(solver.name, setting, spent, found[setting].most))
+        entries += _entries(solver, solve, found)
+        if solver is OURS:
+            for less in OURS_WITH_LESS:
+                outcomes, _ = timed(less.load(), entries[0].setting, runs)
+                errors = accuracy(outcomes, of_runs)
+                entries.append(Entry(less.name, less, less.load(), entries[0].setting, errors))
+    return points, entries
 
 
 def _entries(solver: Solver, solve: Solve, found: dict[float, Accuracy]) -> list[Entry]:

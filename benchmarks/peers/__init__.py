@@ -53,7 +53,11 @@ class Solver:
 
 
 OURS = Solver("gearmesh", "ours")
-OURS_WITHOUT_SAMPLES = Solver("gearmesh, no samples", "ours", function="solve_without_samples")
+OURS_WITH_LESS = (
+    Solver("gearmesh, no samples", "ours", function="solve_without_samples"),
+    Solver("gearmesh, as in the pipeline", "ours", function="solve_with_estimates"),
+)
+"""Other outputs; at the setting of `OURS`."""
 PEERS = (
     Solver("heyoka, batches", "heyoka_batch", single=False),
     Solver("heyoka, scalar", "heyoka_scalar"),
