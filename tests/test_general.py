@@ -217,7 +217,17 @@ def test_full_coordinates_agree_with_the_reduced_system(case):
         assert getattr(full, name) == pytest.approx(getattr(reduced, name), abs=1e-9), name
     assert full.n_contact_losses == reduced.n_contact_losses
     np.testing.assert_allclose(full.final_state, reduced.final_state, atol=1e-9)
-    for name in ("time", "y", "v", "stiffness", "force_dynamic", "force_friction", "regime"):
+    for name in (
+        "time",
+        "y",
+        "v",
+        "a",
+        "stiffness",
+        "modified_stiffness",
+        "force_dynamic",
+        "force_friction",
+        "regime",
+    ):
         np.testing.assert_allclose(
             getattr(full.samples, name), getattr(reduced.samples, name), atol=1e-8, err_msg=name
         )
@@ -374,6 +384,13 @@ def test_a_run_that_takes_too_many_steps_says_so(monkeypatch):
     response = integrate(GENERAL)
     assert response.status == "step_limit"
     assert math.isnan(response.y_max)
+
+
+def test_run_outs_that_cancel_each_other_are_told():
+    """The bracket of eq. (6) vanishes identically, and its sign has no meaning."""
+    case = problem(0.7, eccentricity_3=1.0, eccentricity_2=1.0, eccentricity_angle=math.pi)
+    assert integrate(case).status == "step_limit"
+    assert integrate(replace(case, friction_coefficient=0.0)).status == "ok"
 
 
 def test_too_many_extrema_are_told(monkeypatch):

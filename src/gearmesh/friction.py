@@ -29,6 +29,10 @@ F_T = -f_T E gamma with gamma > 0 before the pitch point (sigma < 0): F_T oppose
 dissipates, as long as the elastic force E is positive. In inverse mesh E is negative while gamma is
 not, so eq. (6) as printed drives the sliding there; it is kept as printed.
 
+With run-out both signs of eq. (6) act, and the wheels, at rest across the mesh line, only start to
+move along z where friction drives (see `gearmesh.general_kernel` on sticking). Run-outs that cancel
+each other in eq. (3) (e_3 = e_2, Delta = pi) leave the first sign without meaning.
+
 Two pairs
 ---------
 gamma halves in double contact, and one pair is before the pitch point when the other is behind it:

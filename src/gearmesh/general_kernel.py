@@ -8,7 +8,8 @@ y is monotone, so its end value tells whether it passes a level, and no touch of
 What acts after an event follows from discrete facts, never from how close a number is to 0. The
 event makes the quantity that located it exactly 0 (`general_series.MODE`); the sign of the first
 coefficient of its series that does not vanish says where it goes from there. A quantity that has
-the wrong sign at the start of a step, left over by rounding, counts as such a 0 too.
+the wrong sign at the start of a step, left over by rounding, counts as such a 0 too. Only a motion
+as small as the rounding errors themselves, of a mesh at rest, has no direction and no extrema.
 
 Sticking
 --------
@@ -18,8 +19,9 @@ that holds them, half of what the bearings pull with, is within <-A; A>; F_T tak
 Where A < 0, eq. (6) drives the sliding and nothing can hold it: from z_3' = z_2' the flanks go
 where the bearings pull them, and from exact rest in the direction of sign +1.
 
-The first sign could stick too, where friction turns its bracket back to 0 from both sides. That
-takes run-outs that cancel each other; such a run ends as one that takes too many steps.
+The first sign could stick too, where friction turns its bracket back to 0 from both sides. It takes
+run-outs that cancel each other, or friction far beyond what is known of gears, and is not treated:
+such a run ends as one that takes too many steps.
 """
 
 import numpy as np
