@@ -85,7 +85,9 @@ def simulate(
 
         for i, measured in enumerate(responses):
             if measured is None:
-                responses[i] = integrate(problems[i], tolerance, samples_per_period)
+                responses[i] = integrate(
+                    problems[i], tolerance, samples_per_period, estimate_errors=estimate_errors
+                )
     return responses
 
 

@@ -43,6 +43,8 @@ from gearmesh.taylor import (
     LINEAR,
     LOAD,
     LOG_TOLERANCE,
+    LONGEST,
+    LONGEST_ANGLE,
     LOSS_TIME,
     LOST,
     MOST_STEPS,
@@ -220,6 +222,11 @@ def _begin(work, width, lane, runs, places, summaries, strobes, index):
     _set(work, width, BEARING_STIFFNESS, lane, run.bearing_stiffness)
     _set(work, width, BEARING_DAMPING, lane, run.bearing_damping)
     _set(work, width, LOG_TOLERANCE, lane, run.log_tolerance)
+    stiffest = 0.0
+    for i in range(run.segments):
+        stiffest = max(stiffest, run.stiffness[i])
+    highest = np.sqrt(stiffest * (1.0 + run.two_mu) + run.bearing_stiffness)
+    _set(work, width, LONGEST, lane, LONGEST_ANGLE / highest)
     _set(work, width, LENGTH, lane, run.length[0])
     _set(work, width, REMAINING, lane, run.length[0])
     _set(work, width, MOST_STEPS, lane, float(MOST_STEPS_PER_PERIOD * run.periods))
@@ -238,6 +245,7 @@ def _idle(work, width, lane, places):
     for row in range(N_ROWS):
         _set(work, width, row, lane, 0.0)
     _set(work, width, MOST_STEPS, lane, np.inf)
+    _set(work, width, LONGEST, lane, 1.0)
     _set(work, width, LENGTH, lane, np.inf)
     _set(work, width, REMAINING, lane, np.inf)
     _set(work, width, LEVEL_ABOVE, lane, np.inf)

@@ -55,6 +55,7 @@ _FIRST = 5 * _SPAN
     GUARD,  # 1 or -1: watch y, which must stay above or below GUARDED; 0: watch v
     GUARDED,  # level that ends the contact
     REMAINING,  # time to the next switch, pitch point or boundary
+    LONGEST,  # bound of a step
     LOG_TOLERANCE,  # log2 of the local error tolerance
     SIGN,  # direction of motion, sign of v
     STEP,  # length of the expansion
@@ -72,14 +73,18 @@ _FIRST = 5 * _SPAN
     STEPS,  # steps taken
     MOST_STEPS,  # steps after which the run is given up
     SCRATCH,  # three rows
-) = range(_FIRST, _FIRST + 32)
+) = range(_FIRST, _FIRST + 33)
 N_ROWS = SCRATCH + 3
 
 REST = 1e-14
 """Velocities and accelerations below this are rounding errors of a body at rest."""
 
-LONGEST_STEP = 2.0
-"""Bound of a step in tau_s: the sampling of a step for events stays fine."""
+LONGEST_ANGLE = 2.0
+"""Bound of a step times the highest natural frequency.
+
+It keeps the sampling of a step for events fine, and the series of a mode that is hardly excited
+within its convergence: such a mode would grow from rounding errors unseen by the tolerance.
+"""
 
 
 @njit(inline="never")
@@ -181,7 +186,7 @@ def choose_step(like, work):
     """Write the step for which the last two terms stay below the tolerance, to the next stop."""
     log_tolerance = load(like, work, LOG_TOLERANCE)
     tiny = spread(like, 1e-290)
-    longest = spread(like, LONGEST_STEP)
+    longest = load(like, work, LONGEST)
     step = load(like, work, REMAINING)
     step = select(longest < step, longest, step)
     for degree in (ORDER - 1, ORDER):
