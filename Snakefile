@@ -2,6 +2,7 @@
 #
 #   snakemake                                           the study of the paper
 #   snakemake data                                      its cases and datasets only
+#   snakemake identify                                  what the paper does not print, inferred
 #   snakemake --config study=config/smoke.yaml          another study
 #   snakemake --profile workflow/profiles/slurm         on a cluster
 #
@@ -58,6 +59,7 @@ include: "workflow/rules/datasets.smk"
 include: "workflow/rules/figures.smk"
 include: "workflow/rules/claims.smk"
 include: "workflow/rules/report.smk"
+include: "workflow/rules/identify.smk"
 
 
 onstart:

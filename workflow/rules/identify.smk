@@ -10,6 +10,8 @@ DESIGNS = load_settings(layout.SETTINGS)
 MEASURE = pipeline.script("identify_batch")
 PLACES = pipeline.script("identify_places")
 GATHER = pipeline.script("identify_dataset")
+INFER = pipeline.script("identify_parameters")
+RUN = pipeline.script("run_notebook")
 
 
 for name, stated in DESIGNS.designs.items():
@@ -63,6 +65,43 @@ rule identification_dataset:
         "{PYTHON} {GATHER} {input.batches}"
 
 
+rule identified:
+    input:
+        pipeline.sources(INFER),
+        layout.SETTINGS,
+        paths.CLAIMS,
+        layout.DATASET,
+        [layout.places_file(name) for name, stated in DESIGNS.designs.items() if stated.around],
+    output:
+        layout.FOUND,
+    params:
+        settings=str(layout.SETTINGS),
+    shell:
+        "{PYTHON} {INFER} {params.settings}"
+
+
+rule identification_notebook:
+    input:
+        sources=pipeline.sources("notebooks/identification.ipynb", RUN),
+        table=layout.FOUND,
+        samples=layout.DATASET,
+        ledger=paths.CLAIMS,
+        settings=layout.SETTINGS,
+    output:
+        [layout.FIGURES / f"{name}.png" for name in layout.FIGURE_NAMES],
+        [layout.FIGURES / f"{name}.svg" for name in layout.FIGURE_NAMES],
+    log:
+        layout.NOTEBOOK,
+    params:
+        recipe=PLAN.recipe,
+        figures=str(layout.FIGURES),
+    shell:
+        "{PYTHON} {RUN} notebooks/identification.ipynb {log} configuration={STUDY}"
+        " table={input.table} samples={input.samples} ledger={input.ledger}"
+        " settings={input.settings} figures={params.figures}"
+
+
 rule identify:
     input:
-        layout.DATASET,
+        layout.FOUND,
+        [layout.FIGURES / f"{name}.svg" for name in layout.FIGURE_NAMES],

@@ -9,6 +9,9 @@ SETTINGS = paths.CONFIG / "identify.yaml"
 FOLDER = paths.RESULTS / "identification"
 DATASET = paths.DATASETS / "identification.nc"
 FOUND = FOLDER / "identified.yaml"
+NOTEBOOK = paths.EXECUTED_NOTEBOOKS / "identification.ipynb"
+FIGURES = FOLDER / "figures"
+FIGURE_NAMES = ("regions", "supports", "sensitivity")
 
 IDENTIFIED = paths.CONFIG / "identified.yaml"
 """The committed copy of `FOUND`, which the report reads."""
@@ -26,7 +29,8 @@ def places_file(design: str) -> Path:
 
 def batch_count(settings: Settings, design: str) -> int:
     """Return the number of batches of a design."""
-    return -(-settings.designs[design].points // settings.points_per_job)
+    stated = settings.designs[design]
+    return -(-stated.points // stated.points_per_job)
 
 
 def batch_files(settings: Settings, *designs: str) -> list[str]:

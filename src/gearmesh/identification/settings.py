@@ -70,6 +70,7 @@ class Design(Section):
 
     purpose: str = Field(min_length=1)
     points: int = Field(gt=0, le=2**20)
+    points_per_job: int = Field(128, gt=0, le=4096)
     seed: int = Field(ge=0)
     vary: tuple[str, ...]
     fixed: dict[str, float | str] = Field(default_factory=dict)
@@ -118,7 +119,6 @@ class Settings(Section):
     together: tuple[tuple[str, ...], ...] = Field(
         (), description="claims that say the same thing, never held out one without the other"
     )
-    points_per_job: int = Field(gt=0, le=4096)
 
     def sampling(self, name: str) -> str:
         """Return a digest of all that decides the samples of a design and how they are cut."""
@@ -128,7 +128,7 @@ class Settings(Section):
             for f in design.vary
             if f != "kind"
         }
-        stated = (self.points_per_job, design.model_dump(exclude={"purpose"}), ranges)
+        stated = design.model_dump(exclude={"purpose"}), ranges
         before = self.sampling(design.around) if design.around else ""
         return hashlib.sha256(f"{stated} {before}".encode()).hexdigest()
 

@@ -63,7 +63,7 @@ def compute(
         Places of the whole design in the unit cube.
     """
     design = settings.designs[name]
-    size = settings.points_per_job
+    size = design.points_per_job
     part = places[index * size : (index + 1) * size]
     drawn = samples(part, design, settings, study)
     return store.dataset(name, design, part, drawn, list(measure(drawn, study)))
