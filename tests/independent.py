@@ -14,6 +14,9 @@ from scipy.linalg import expm
 from gearmesh import stiffness
 from gearmesh.friction import follows_run_out, mesh_gamma
 from gearmesh.motion import (
+    CONTACT_LOSS,
+    INVERSE_MESH,
+    NORMAL_MESH,
     Z_2,
     Z_3,
     Mode,
@@ -28,7 +31,6 @@ from gearmesh.motion import (
     run_out_argument,
     start,
 )
-from gearmesh.response import CONTACT_LOSS, INVERSE_MESH, NORMAL_MESH
 
 
 @dataclass

@@ -13,7 +13,8 @@ from test_integrator import problem
 from gearmesh import general
 from gearmesh.general import integrate
 from gearmesh.integrator import simulate
-from gearmesh.response import CONTACT_LOSS, MAXIMUM, NORMAL_MESH
+from gearmesh.motion import CONTACT_LOSS, NORMAL_MESH
+from gearmesh.response import MAXIMUM
 
 IMMOVABLE = 1e30
 """Body mass with which y_3 - y_2 keeps its value, so that y'' = 1 - N is all that is left."""

@@ -11,8 +11,7 @@ from independent import integrate as integrate_independently
 from test_integrator import problem
 
 from gearmesh.general import integrate
-from gearmesh.motion import Problem
-from gearmesh.response import INVERSE_MESH
+from gearmesh.motion import INVERSE_MESH, Problem
 
 RUN_OUT = {"eccentricity_3": 0.5, "eccentricity_2": 0.3, "eccentricity_angle": 1.0}
 

@@ -10,8 +10,8 @@ from hypothesis import strategies as st
 from gearmesh import integrator
 from gearmesh.damping import VARIANTS
 from gearmesh.integrator import simulate
-from gearmesh.motion import Problem
-from gearmesh.response import CONTACT_LOSS, INVERSE_MESH, MAXIMUM, NORMAL_MESH, Response
+from gearmesh.motion import CONTACT_LOSS, INVERSE_MESH, NORMAL_MESH, Problem
+from gearmesh.response import MAXIMUM, Response
 
 MEAN = 3.28954
 POWERS = (0.12336, 0.24672, 0.49344)

@@ -11,6 +11,9 @@ from test_integrator import problem
 
 from gearmesh import motion
 from gearmesh.motion import (
+    CONTACT_LOSS,
+    INVERSE_MESH,
+    NORMAL_MESH,
     ROTATION_2,
     ROTATION_3,
     Y_2,
@@ -22,7 +25,6 @@ from gearmesh.motion import (
     relative_motion,
     static_equilibrium,
 )
-from gearmesh.response import CONTACT_LOSS, INVERSE_MESH, NORMAL_MESH
 
 PLAIN = problem(friction_coefficient=0.0, bearing_damping_ratio=0.0, lubricant=(0.0, 0.0, 0.0))
 RUN_OUT = replace(

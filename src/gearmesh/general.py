@@ -14,14 +14,19 @@ from numba import njit
 from gearmesh import general_kernel, general_roots, general_series, motion, response, stiffness
 from gearmesh.compilation import persistent
 from gearmesh.friction import follows_run_out, pairs_in_contact
-from gearmesh.general_kernel import EXTREMUM, SAMPLE, SUMMARY
+from gearmesh.general_kernel import SAMPLE, SUMMARY
 from gearmesh.general_roots import MAX_DEGREE
 from gearmesh.general_series import CASE, MODE, STRETCH
-from gearmesh.integrator import LOOSENING, SENSITIVE
-from gearmesh.motion import Problem, bearing_damping, dynamic_force, start, sum_and_difference
-from gearmesh.response import CONTACT_LOSS, Response, Samples
+from gearmesh.motion import (
+    CONTACT_LOSS,
+    Problem,
+    bearing_damping,
+    dynamic_force,
+    start,
+    sum_and_difference,
+)
+from gearmesh.response import EXTREMUM, LOOSENING, Response, Samples, assemble
 
-_STATUS = ("ok", "step_limit", "extremum_overflow", "not_finite")
 _EXTREMA_PER_PERIOD = 64
 _STEPS_PER_PERIOD = 2000
 
@@ -74,43 +79,21 @@ def integrate(
     summary, state, strobes, extrema, samples = _run(
         problem, tolerance, samples_per_period, order or suitable_order(tolerance)
     )
-    if summary["status"]:
-        return Response(_STATUS[summary["status"]], problem.period)
-    errors = [math.nan, math.nan]
+    companion = None
     if estimate_errors:
-        errors = _estimate_errors(problem, tolerance, order, summary)
-    periods = problem.kept_revolutions * problem.teeth
-    duration = periods * problem.period
-    return Response(
-        status="ok",
-        period=problem.period,
-        extremum_time=extrema["time"].copy(),
-        extremum_y=extrema["y"].copy(),
-        extremum_kind=extrema["kind"].copy(),
-        strobe_y=strobes[:, 0].copy(),
-        strobe_v=strobes[:, 1].copy(),
-        y_max=float(summary["y_max"]),
-        y_min=float(summary["y_min"]),
-        y_rms=math.sqrt(summary["square_integral"] / duration),
-        contact_loss_fraction=float(summary["loss_time"]) / duration,
-        inverse_mesh_fraction=float(summary["inverse_time"]) / duration,
-        n_contact_losses=int(summary["contact_losses"]),
-        turning_points_per_period=len(extrema) / periods,
-        y_max_error=errors[0],
-        y_min_error=errors[1],
-        final_state=sum_and_difference(state[:6], state[6:]),
-        sensitive=any(error > SENSITIVE * tolerance for error in errors),
-        samples=_samples(samples) if samples_per_period else None,
+        loose = tolerance * LOOSENING
+        companion, *_ = _run(problem, loose, 0, order or suitable_order(loose))
+    return assemble(
+        summary,
+        companion,
+        strobes,
+        extrema,
+        problem.period,
+        problem.kept_revolutions * problem.teeth,
+        sum_and_difference(state[:6], state[6:]),
+        tolerance,
+        _samples(samples) if samples_per_period else None,
     )
-
-
-def _estimate_errors(problem: Problem, tolerance: float, order: int | None, summary) -> list[float]:
-    """Return how far y_max and y_min are from those of the companion run."""
-    loose = tolerance * LOOSENING
-    companion, *_ = _run(problem, loose, 0, order or suitable_order(loose))
-    if companion["status"]:
-        return [math.inf, math.inf]
-    return [abs(float(summary[name] - companion[name])) for name in ("y_max", "y_min")]
 
 
 def _run(problem: Problem, tolerance: float, samples_per_period: int, order: int):

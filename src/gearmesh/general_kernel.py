@@ -47,29 +47,19 @@ from gearmesh.general_series import (
     expand,
     level,
 )
-from gearmesh.motion import Z_2, Z_3
-from gearmesh.response import CONTACT_LOSS, INVERSE_MESH, MAXIMUM, MINIMUM, NORMAL_MESH
-
-OK, STEP_LIMIT, EXTREMUM_OVERFLOW, NOT_FINITE = range(4)
-"""Outcome of a run."""
-
-SUMMARY = np.dtype(
-    [
-        ("status", np.int64),
-        ("steps", np.int64),
-        ("extrema", np.int64),
-        ("samples", np.int64),
-        ("contact_losses", np.int64),
-        ("y_max", np.float64),
-        ("y_min", np.float64),
-        ("square_integral", np.float64),
-        ("loss_time", np.float64),
-        ("inverse_time", np.float64),
-    ]
+from gearmesh.motion import CONTACT_LOSS, INVERSE_MESH, NORMAL_MESH, Z_2, Z_3
+from gearmesh.response import (
+    EXTREMUM_OVERFLOW,
+    MAXIMUM,
+    MEASURED,
+    MINIMUM,
+    NOT_FINITE,
+    OK,
+    STEP_LIMIT,
 )
-"""What is measured on a run besides its extrema, strobes and samples."""
 
-EXTREMUM = np.dtype([("time", np.float64), ("y", np.float64), ("kind", np.int8)])
+SUMMARY = np.dtype([*MEASURED, ("samples", np.int64)])
+"""What is measured on a run, and how many samples were taken."""
 
 SAMPLE = np.dtype(
     [(name, np.float64) for name in ("time", "y", "v", "a", "stiffness", "friction", "regime")]

@@ -11,8 +11,7 @@ import numpy as np
 from numba import njit
 
 from gearmesh.general_roots import MAX_DEGREE
-from gearmesh.motion import WHEEL_INERTIA, Y_2, Y_3, Z_2, Z_3
-from gearmesh.response import CONTACT_LOSS, INVERSE_MESH
+from gearmesh.motion import CONTACT_LOSS, INVERSE_MESH, WHEEL_INERTIA, Y_2, Y_3, Z_2, Z_3
 
 CASE = np.dtype(
     [

@@ -14,20 +14,13 @@ from itertools import pairwise
 import numpy as np
 from numba import njit
 
-from gearmesh import events, lanes, response, sweep, taylor
+from gearmesh import events, lanes, motion, response, sweep, taylor
 from gearmesh.compilation import persistent
 from gearmesh.friction import mesh_gamma
 from gearmesh.motion import Problem
-from gearmesh.response import Response, Samples
+from gearmesh.response import LOOSENING, Response, Samples, assemble
 from gearmesh.stiffness import in_double_contact, switch_phases
 
-LOOSENING = 100.0
-"""How much looser the companion run is whose difference estimates the errors."""
-
-SENSITIVE = 1e5
-"""An estimated error above this multiple of the tolerance marks a sensitive orbit."""
-
-_STATUS = ("ok", "step_limit", "extremum_overflow", "not_finite")
 _EXTREMA_PER_PERIOD = 64
 # Equal wheels: the pitch point halves the single contact.
 _PITCH_PHASE = 0.5
@@ -43,7 +36,7 @@ def _build_sweep(sources: str, cache: bool):
     return compiled
 
 
-_sweep = persistent(_build_sweep, lanes, taylor, events, response, sweep)
+_sweep = persistent(_build_sweep, lanes, taylor, events, motion, response, sweep)
 
 
 def simulate(
@@ -156,62 +149,25 @@ def _simulate_reduced(problems, tolerance, samples_per_period, estimate_errors) 
     summaries["y_max"] = -np.inf
     summaries["y_min"] = np.inf
     strobes = np.empty((n, int(runs["periods"].max()) + 1, 2))
-    extrema = np.empty((n, _EXTREMA_PER_PERIOD * kept), sweep.EXTREMUM)
+    extrema = np.empty((n, _EXTREMA_PER_PERIOD * kept), response.EXTREMUM)
     sampled = n if samples_per_period else 0
     row = kept * samples_per_period + lanes.WIDEST
     samples = np.empty((sampled, sweep.N_SAMPLE_ROWS * row))
     _sweep(runs, summaries, strobes, extrema, samples, samples_per_period)
     return [
-        _response(
-            problem,
-            runs[i],
+        assemble(
             summaries[i],
             summaries[n + i] if estimate_errors else None,
-            strobes[i],
-            extrema[i],
-            _samples(problem, samples[i], samples_per_period) if sampled else None,
+            strobes[i, : runs[i]["periods"] + 1],
+            extrema[i, : summaries[i]["extrema"]],
+            float(runs[i]["period"]),
+            problem.kept_revolutions * problem.teeth,
+            tuple(summaries[i]["final"].tolist()),
             tolerance,
+            _samples(problem, samples[i], samples_per_period) if sampled else None,
         )
         for i, problem in enumerate(problems)
     ]
-
-
-def _response(problem, run, summary, companion, strobes, extrema, samples, tolerance) -> Response:
-    period = float(run["period"])
-    if summary["status"] != sweep.OK:
-        return Response(_STATUS[summary["status"]], period)
-    extrema = extrema[: summary["extrema"]]
-    strobes = strobes[: run["periods"] + 1]
-    periods = problem.kept_revolutions * problem.teeth
-    duration = periods * period
-    errors = [np.nan, np.nan]
-    if companion is not None:
-        failed = companion["status"] != sweep.OK
-        errors = [
-            math.inf if failed else abs(float(summary[name] - companion[name]))
-            for name in ("y_max", "y_min")
-        ]
-    return Response(
-        status="ok",
-        period=period,
-        extremum_time=extrema["time"].copy(),
-        extremum_y=extrema["y"].copy(),
-        extremum_kind=extrema["kind"].copy(),
-        strobe_y=strobes[:, 0].copy(),
-        strobe_v=strobes[:, 1].copy(),
-        y_max=float(summary["y_max"]),
-        y_min=float(summary["y_min"]),
-        y_rms=float(np.sqrt(summary["square_integral"] / duration)),
-        contact_loss_fraction=float(summary["loss_time"]) / duration,
-        inverse_mesh_fraction=float(summary["inverse_time"]) / duration,
-        n_contact_losses=int(summary["contact_losses"]),
-        turning_points_per_period=len(extrema) / periods,
-        y_max_error=errors[0],
-        y_min_error=errors[1],
-        final_state=tuple(summary["final"].tolist()),
-        sensitive=any(error > SENSITIVE * tolerance for error in errors),
-        samples=samples,
-    )
 
 
 def _samples(problem, rows, per_period) -> Samples:

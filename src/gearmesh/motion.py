@@ -17,7 +17,9 @@ import numpy as np
 from gearmesh import stiffness
 from gearmesh.damping import damping_force
 from gearmesh.friction import arms, follows_run_out, friction_force, pairs_in_contact
-from gearmesh.response import CONTACT_LOSS, INVERSE_MESH, NORMAL_MESH
+
+NORMAL_MESH, CONTACT_LOSS, INVERSE_MESH = 1, 0, -1
+"""Regimes of the mesh: y >= 0, -s < y < 0 and y <= -s."""
 
 ROTATION_3, ROTATION_2, Y_3, Y_2, Z_3, Z_2 = range(6)
 """Places of R_b phi_3, R_b phi_2, y_3, y_2, z_3, z_2 among the coordinates."""

@@ -8,11 +8,37 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-NORMAL_MESH, CONTACT_LOSS, INVERSE_MESH = 1, 0, -1
-"""Regimes of the mesh: y >= 0, -s < y < 0 and y <= -s."""
+OK, STEP_LIMIT, EXTREMUM_OVERFLOW, NOT_FINITE = range(4)
+"""Outcome of a run, as the compiled solvers tell it."""
+
+STATUSES = ("ok", "step_limit", "extremum_overflow", "not_finite")
+"""Their names, as `Response.status` tells them."""
+
+LOOSENING = 100.0
+"""How much looser the companion run is whose difference estimates the errors."""
+
+SENSITIVE = 1e5
+"""An estimated error above this multiple of the tolerance marks a sensitive orbit."""
 
 MAXIMUM, MINIMUM = 1, -1
 """Kinds of extrema."""
+
+
+EXTREMUM = np.dtype([("time", np.float64), ("y", np.float64), ("kind", np.int8)])
+"""An extremum of y in the kept revolutions; `time` in tau_s from the start of the run."""
+
+MEASURED = [
+    ("status", np.int64),
+    ("steps", np.int64),
+    ("extrema", np.int64),
+    ("contact_losses", np.int64),
+    ("y_max", np.float64),
+    ("y_min", np.float64),
+    ("square_integral", np.float64),
+    ("loss_time", np.float64),
+    ("inverse_time", np.float64),
+]
+"""Fields of what a compiled solver measures on a run besides its extrema, strobes and samples."""
 
 
 @dataclass(slots=True)
@@ -85,3 +111,57 @@ class Response:
     final_state: tuple[float, float, float, float] | None = None
     sensitive: bool = False
     samples: Samples | None = None
+
+
+def assemble(
+    summary, companion, strobes, extrema, period, kept_periods, final_state, tolerance, samples
+) -> Response:
+    """Return the response that a compiled solver has measured.
+
+    Parameters
+    ----------
+    summary, companion : record with the fields `MEASURED`
+        Of the run and of its companion, which may be None.
+    strobes : ndarray, shape (n_periods + 1, 2)
+    extrema : ndarray of `EXTREMUM`
+        Copied: it may be a piece of a workspace, as `strobes` may.
+    period : float
+        T in tau_s.
+    kept_periods : int
+        Mesh periods that are measured.
+    final_state : tuple of four float
+    tolerance : float
+        Of the run.
+    samples : Samples or None
+    """
+    if summary["status"] != OK:
+        return Response(STATUSES[summary["status"]], period)
+    errors = [np.nan, np.nan]
+    if companion is not None:
+        lost = companion["status"] != OK
+        errors = [
+            np.inf if lost else abs(float(summary[name] - companion[name]))
+            for name in ("y_max", "y_min")
+        ]
+    duration = kept_periods * period
+    return Response(
+        status="ok",
+        period=period,
+        extremum_time=extrema["time"].copy(),
+        extremum_y=extrema["y"].copy(),
+        extremum_kind=extrema["kind"].copy(),
+        strobe_y=strobes[:, 0].copy(),
+        strobe_v=strobes[:, 1].copy(),
+        y_max=float(summary["y_max"]),
+        y_min=float(summary["y_min"]),
+        y_rms=float(np.sqrt(summary["square_integral"] / duration)),
+        contact_loss_fraction=float(summary["loss_time"]) / duration,
+        inverse_mesh_fraction=float(summary["inverse_time"]) / duration,
+        n_contact_losses=int(summary["contact_losses"]),
+        turning_points_per_period=len(extrema) / kept_periods,
+        y_max_error=errors[0],
+        y_min_error=errors[1],
+        final_state=final_state,
+        sensitive=any(error > SENSITIVE * tolerance for error in errors),
+        samples=samples,
+    )

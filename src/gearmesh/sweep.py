@@ -24,7 +24,16 @@ from gearmesh.lanes import (
     store_at,
     width_of,
 )
-from gearmesh.response import CONTACT_LOSS, INVERSE_MESH, MAXIMUM, MINIMUM, NORMAL_MESH
+from gearmesh.motion import CONTACT_LOSS, INVERSE_MESH, NORMAL_MESH
+from gearmesh.response import (
+    EXTREMUM_OVERFLOW,
+    MAXIMUM,
+    MEASURED,
+    MINIMUM,
+    NOT_FINITE,
+    OK,
+    STEP_LIMIT,
+)
 from gearmesh.taylor import (
     BEARING_DAMPING,
     BEARING_STIFFNESS,
@@ -74,9 +83,6 @@ from gearmesh.taylor import (
 # What ends a step.
 _PASSED, _TURNED, _CROSSED, _STOPPED = 0.0, 1.0, 2.0, 3.0
 
-OK, STEP_LIMIT, EXTREMUM_OVERFLOW, NOT_FINITE = range(4)
-"""Outcome of a run."""
-
 N_SAMPLE_ROWS = 8
 """Rows of samples: y, v, a, C/C_s, C (H1 + H2)/C_s, F_dyn, F_T, regime."""
 
@@ -110,24 +116,8 @@ share of the elastic force that friction adds to u'' and the ratio of the fricti
 the elastic force. `start` is (u, u', b, b').
 """
 
-SUMMARY = np.dtype(
-    [
-        ("status", np.int64),
-        ("extrema", np.int64),
-        ("contact_losses", np.int64),
-        ("steps", np.int64),
-        ("y_max", np.float64),
-        ("y_min", np.float64),
-        ("square_integral", np.float64),
-        ("loss_time", np.float64),
-        ("inverse_time", np.float64),
-        ("final", np.float64, 4),
-    ]
-)
-"""What the kernel measures on a run besides its extrema, strobes and samples."""
-
-EXTREMUM = np.dtype([("time", np.float64), ("y", np.float64), ("kind", np.int8)])
-"""An extremum of y in the kept revolutions; `time` in tau_s from the start of the run."""
+SUMMARY = np.dtype([*MEASURED, ("final", np.float64, 4)])
+"""What the kernel measures on a run, and (u, u', b, b') at its end."""
 
 PLACE = np.dtype(
     [

@@ -6,7 +6,7 @@ import numpy as np
 
 from gearmesh.claims.evidence import Evidence
 from gearmesh.claims.fig2 import LUBRICANT
-from gearmesh.response import NORMAL_MESH
+from gearmesh.motion import NORMAL_MESH
 from gearmesh.thresholds import STROBED_AT
 
 if TYPE_CHECKING:
