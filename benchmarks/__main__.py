@@ -16,7 +16,7 @@ from pathlib import Path
 
 from benchmarks import table, work_precision
 from benchmarks.cases import SWEEP, singles, sweeps
-from benchmarks.measure import AIM, SHARE, Accuracy, Contest, accuracy, sparse, timed
+from benchmarks.measure import AIM, SHARE, Accuracy, Contest, measured, sparse
 from benchmarks.peers import OURS, OURS_WITH_LESS, PEERS, Solve, Solver
 
 ROUNDS = 7
@@ -97,15 +97,13 @@ def _scan(solvers, runs, of_runs) -> tuple[list[work_precision.Point], list[Entr
         found = {}
         for setting in solver.settings:
             _say(f"{solver.name}: {solver.setting} {setting:g}")
-            solve(next(iter(cases.values()))[:1], setting)  # compiles
-            outcomes, spent = timed(solve, setting, cases)
-            found[setting] = accuracy(outcomes, known)
+            solve(next(iter(cases.values())), setting)  # compiles and warms up
+            found[setting], spent = measured(solve, setting, cases, known)
             points.append(work_precision.Point(solver.name, setting, spent, found[setting].most))
         entries += _entries(solver, solve, found)
         if solver is OURS:
             for less in OURS_WITH_LESS:
-                outcomes, _ = timed(less.load(), entries[0].setting, runs)
-                errors = accuracy(outcomes, of_runs)
+                errors, _ = measured(less.load(), entries[0].setting, runs, of_runs)
                 entries.append(Entry(less.name, less, less.load(), entries[0].setting, errors))
     return points, entries
 

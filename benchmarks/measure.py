@@ -2,12 +2,12 @@
 
 import statistics
 import time
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
-from benchmarks.outcome import Outcome, deviation
+from benchmarks.outcome import deviation
 from benchmarks.peers import Solve
 from benchmarks.reference import Reference
 from gearmesh.motion import Problem
@@ -40,29 +40,26 @@ def sparse(of_variants: dict[str, list]) -> dict[str, list]:
     return {name: values[SPARSE] for name, values in of_variants.items()}
 
 
-def accuracy(
-    outcomes: dict[str, list[Outcome]], references: dict[str, list[Reference]]
-) -> Accuracy:
-    """Compare the outcomes of sweeps with their references."""
-    errors, extrema_differ = [], 0
-    for name, found in outcomes.items():
-        for outcome, reference in zip(found, references[name], strict=True):
+def measured(
+    solve: Solve,
+    setting: float,
+    sweeps: dict[str, list[Problem]],
+    references: dict[str, list[Reference]],
+) -> tuple[Accuracy, float]:
+    """Compare the runs of `sweeps` with their references; return also the CPU time of a run."""
+    errors, extrema_differ, spent = [], 0, 0.0
+    for name, problems in sweeps.items():
+        start = time.process_time()
+        outcomes = solve(problems, setting)
+        spent += time.process_time() - start
+        for outcome, reference in zip(outcomes, references[name], strict=True):
             if not reference.sensitive:
                 apart = deviation(outcome, reference.outcome)
                 errors.append(apart.error)
                 extrema_differ += not apart.extrema_agree
     median, most, largest = np.quantile(errors, (0.5, SHARE, 1.0), method="higher")
-    return Accuracy(float(median), float(most), float(largest), extrema_differ)
-
-
-def timed(
-    solve: Solve, setting: float, calls: Mapping[str, Sequence[Problem]]
-) -> tuple[dict[str, list[Outcome]], float]:
-    """Return the outcomes of `calls` and the CPU time of a run."""
-    start = time.process_time()
-    outcomes = {name: solve(problems, setting) for name, problems in calls.items()}
-    spent = time.process_time() - start
-    return outcomes, spent / sum(map(len, calls.values()))
+    found = Accuracy(float(median), float(most), float(largest), extrema_differ)
+    return found, spent / sum(map(len, sweeps.values()))
 
 
 def seconds(solve: Solve, setting: float, calls: Sequence[Sequence[Problem]]) -> float:
