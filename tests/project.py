@@ -76,15 +76,22 @@ class Project:
                 shutil.copy2(source, folder / source.name)
         return Project(folder, self.config)
 
-    def command(self, *arguments: str, cores: int = 2, profile: str = PROFILE) -> list[str]:
+    def command(
+        self,
+        *arguments: str,
+        cores: int = 2,
+        profile: str = PROFILE,
+        options: tuple[str, ...] = (),
+    ) -> list[str]:
         """Return the command line of a run."""
         return [
             *(sys.executable, "-m", "snakemake", "--profile", profile),
+            *options,
             *("--cores", str(cores), "--config", f"study={self.config}", "--"),
             *arguments,
         ]
 
-    def run(self, *arguments: str, **settings: int | str) -> subprocess.CompletedProcess:
+    def run(self, *arguments: str, **settings: object) -> subprocess.CompletedProcess:
         """Run targets to the end; settings are those of `command`."""
         return subprocess.run(
             self.command(*arguments, **settings),
@@ -142,12 +149,13 @@ class Project:
         path.write_text(text.replace(old, new, 1), encoding="utf-8")
 
     def results(self) -> dict[str, str]:
-        """Return every file of the results, hidden ones aside, with its SHA-256."""
+        """Return every file of the results with its SHA-256; hidden ones and logs aside."""
         results = self.path("results")
         return {
             str(path.relative_to(results)): hashlib.sha256(path.read_bytes()).hexdigest()
             for path in sorted(results.rglob("*"))
             if path.is_file()
+            and path.parent.name != "logs"
             and not any(p.startswith(".") for p in path.relative_to(results).parts)
         }
 

@@ -10,11 +10,11 @@ from independent import energy, linear_strobes, period_map_trace
 from scipy.optimize import brentq
 from test_integrator import problem
 
-from gearmesh import general
-from gearmesh.general import integrate
 from gearmesh.integrator import simulate
 from gearmesh.motion import CONTACT_LOSS, NORMAL_MESH
 from gearmesh.response import MAXIMUM
+from gearmesh.solver import general
+from gearmesh.solver.general import integrate
 
 IMMOVABLE = 1e30
 """Body mass with which y_3 - y_2 keeps its value, so that y'' = 1 - N is all that is left."""

@@ -6,7 +6,7 @@ from hypothesis import assume, given
 from hypothesis import strategies as st
 from numpy.polynomial import Polynomial
 
-from gearmesh.general_roots import MAX_DEGREE, NEVER, TABLE_SHAPE, first_change
+from gearmesh.solver.general_roots import MAX_DEGREE, NEVER, TABLE_SHAPE, first_change
 
 
 def first(coefficients, sign):

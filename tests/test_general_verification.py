@@ -10,8 +10,8 @@ import pytest
 from independent import integrate as integrate_independently
 from test_integrator import problem
 
-from gearmesh.general import integrate
 from gearmesh.motion import INVERSE_MESH, Problem
+from gearmesh.solver.general import integrate
 
 RUN_OUT = {"eccentricity_3": 0.5, "eccentricity_2": 0.3, "eccentricity_angle": 1.0}
 

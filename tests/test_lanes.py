@@ -5,7 +5,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from numba import njit
 
-from gearmesh import lanes
+from gearmesh.solver import lanes
 
 NUMBERS = st.floats(-1e100, 1e100, allow_nan=False)
 EIGHT = st.lists(NUMBERS, min_size=8, max_size=8).map(np.array)

@@ -119,6 +119,7 @@ def test_slurm_gives_the_bytes_of_a_local_run(slurm, smoke: Project, tmp_path: P
     project = smoke.copy(tmp_path / "project")
     shutil.rmtree(project.path("results"))
     shutil.rmtree(project.path(".snakemake"))
-    finished = project.run("all", profile="workflow/profiles/slurm")
+    polled = ("--slurm-init-seconds-before-status-checks", "5")
+    finished = project.run("all", profile="workflow/profiles/slurm", options=polled)
     assert "Submitted" in finished.stdout or "SLURM" in finished.stdout, finished.stdout
     assert project.results() == smoke.results(), finished.stdout

@@ -24,10 +24,7 @@ from gearmesh import provenance
 from gearmesh.configuration import Case
 from gearmesh.errors import InputError
 from gearmesh.parameters import Parameters
-from gearmesh.response import Response
-
-STATUSES = ("ok", "step_limit", "extremum_overflow", "not_finite")
-"""Meanings of the flag variable `status`; its values are the places in this list."""
+from gearmesh.response import STATUSES, Response
 
 REGIMES = {1: "normal_mesh", 0: "contact_loss", -1: "inverse_mesh"}
 EXTREMUM_KINDS = {1: "maximum", -1: "minimum"}
@@ -293,7 +290,8 @@ def sealed(path: Path, made_of: str) -> Iterator[netCDF4.Dataset]:
     except (OSError, RuntimeError) as error:
         raise unwritable(path, error) from None
     finally:
-        temporary.unlink(missing_ok=True)
+        with contextlib.suppress(OSError):
+            temporary.unlink()
 
 
 def _define_seal(file: netCDF4.Dataset) -> None:

@@ -30,8 +30,8 @@ dissipates, as long as the elastic force E is positive. In inverse mesh E is neg
 not, so eq. (6) as printed drives the sliding there; it is kept as printed.
 
 With run-out both signs of eq. (6) act, and the wheels, at rest across the mesh line, only start to
-move along z where friction drives (see `gearmesh.general_kernel` on sticking). Run-outs that cancel
-each other in eq. (3) (e_3 = e_2, Delta = pi) leave the first sign without meaning.
+move along z where friction drives (`gearmesh.solver.general_kernel` tells of sticking). Run-outs
+that cancel each other in eq. (3) (e_3 = e_2, Delta = pi) leave the first sign without meaning.
 
 Two pairs
 ---------

@@ -1,8 +1,8 @@
 """Integration of runs, one or thousands, to a tolerance.
 
 `simulate` is the one door to both solvers: the compiled sweep over SIMD lanes
-(`gearmesh.sweep`) for the reduced system, and the general solver in the six coordinates
-(`gearmesh.general`) for what the reduction leaves out: run-out, profile deviation and the
+(`gearmesh.solver.sweep`) for the reduced system, and the general solver in the six coordinates
+(`gearmesh.solver.general`) for what the reduction leaves out: run-out, profile deviation and the
 truncated Fourier series of the stiffness.
 """
 
@@ -14,11 +14,12 @@ from itertools import pairwise
 import numpy as np
 from numba import njit
 
-from gearmesh import events, lanes, motion, response, sweep, taylor
-from gearmesh.compilation import persistent
+from gearmesh import motion, response
 from gearmesh.friction import mesh_gamma
 from gearmesh.motion import Problem
 from gearmesh.response import LOOSENING, Response, Samples, assemble
+from gearmesh.solver import events, lanes, sweep, taylor
+from gearmesh.solver.compilation import persistent
 from gearmesh.stiffness import in_double_contact, switch_phases
 
 _EXTREMA_PER_PERIOD = 64
@@ -74,7 +75,7 @@ def simulate(
         for i, measured in zip(chunk, found, strict=True):
             responses[i] = measured
     if len(reduced) < len(problems):
-        from gearmesh.general import integrate
+        from gearmesh.solver.general import integrate
 
         for i, measured in enumerate(responses):
             if measured is None:

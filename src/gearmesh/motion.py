@@ -6,7 +6,7 @@ lengths R_b phi. Wheels, bodies and bearings of the pair are equal; a wheel alon
 2 m_red on its base circle.
 
 This is the model as one reads it, for checking and for single evaluations; the solvers
-(`gearmesh.integrator`, `gearmesh.general`) have their own compiled forms of it.
+(`gearmesh.integrator`, `gearmesh.solver.general`) have their own compiled forms of it.
 """
 
 import math

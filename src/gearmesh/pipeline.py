@@ -1,6 +1,7 @@
 """What the Snakefile asks of a study: its files, its batches, and what each stage depends on."""
 
 import hashlib
+import shlex
 import sys
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
@@ -187,9 +188,10 @@ def _relative(file: Path) -> str:
     return str(file.relative_to(root) if file.is_relative_to(root) else file)
 
 
-def python() -> str:
-    """Return the interpreter that runs the scripts: the one that runs Snakemake."""
-    return sys.executable
+def prefix(plan: Plan) -> str:
+    """Return what goes before each shell command: where `python` is, and which study runs."""
+    folder = shlex.quote(str(Path(sys.executable).parent))
+    return f"export PATH={folder}:$PATH STUDY={shlex.quote(str(plan.config))}; "
 
 
 def _digest(stated: object) -> str:

@@ -20,10 +20,13 @@ from pygments.formatters import HtmlFormatter
 
 from gearmesh import paths, provenance
 from gearmesh.casefile import STATUSES
-from gearmesh.claims import Entry, read_entries, verdict
+from gearmesh.claims import Entry, load_ledger, read_entries, verdict
 from gearmesh.configuration import Study
 from gearmesh.datasets import open_dataset
 from gearmesh.equations import EQUATIONS
+from gearmesh.identification import layout, table
+from gearmesh.identification.presentation import section
+from gearmesh.identification.settings import load_settings
 from gearmesh.parameters import DERIVATIONS, rows
 from gearmesh.presentation import environment, number
 
@@ -72,12 +75,23 @@ def write_report(study: Study) -> None:
     captions = {
         name: (CAPTIONS / f"{name}.rst").read_text(encoding="utf-8") for name in paths.FIGURE_NAMES
     }
-    page = render(study, read_entries(paths.LEDGER), open_dataset(paths.RESONANCE), captions)
+    identified = section(
+        table.read(),
+        load_ledger(paths.CLAIMS),
+        load_settings(layout.SETTINGS),
+        study.parameters,
+    )
+    resonance = open_dataset(paths.RESONANCE)
+    page = render(study, read_entries(paths.LEDGER), resonance, captions, identified)
     _write(paths.REPORT, page)
 
 
 def render(
-    study: Study, entries: Sequence[Entry], resonance: xr.Dataset, captions: dict[str, str]
+    study: Study,
+    entries: Sequence[Entry],
+    resonance: xr.Dataset,
+    captions: dict[str, str],
+    identified: str = "",
 ) -> str:
     """Return the page.
 
@@ -91,6 +105,8 @@ def render(
         Status and sensitivity of every case.
     captions : dict of str to str
         Caption of each figure.
+    identified : str
+        HTML of what the claims tell about the open parameters.
     """
     return (
         environment()
@@ -105,6 +121,7 @@ def render(
             printed=list(_given(study, "printed")),
             derived=[*_given(study, "derived"), *_following(study)],
             assumed=list(_given(study, "assumed")),
+            identified=identified,
             computation=list(_computation(study, resonance)),
             sensitivity=list(_sensitivity(resonance)),
         )

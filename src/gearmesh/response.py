@@ -85,7 +85,7 @@ class Response:
     y_max_error, y_min_error : float
         Estimated errors of `y_max` and `y_min`.
     final_state : tuple of four float
-        u, u', b, b' at the end of the run (`gearmesh.taylor`), to go on from in a sweep.
+        u, u', b, b' at the end of the run (`gearmesh.solver.taylor`), to go on from in a sweep.
     sensitive : bool
         Whether the orbit amplifies integration errors (grazing, chaos).
     samples : Samples or None

@@ -18,7 +18,7 @@ below are row numbers.
 
 from numba import njit
 
-from gearmesh.lanes import (
+from gearmesh.solver.lanes import (
     coarse_exp2,
     coarse_log2,
     fma,

@@ -16,8 +16,8 @@ below 0 it is computed.
 
 from numba import njit
 
-from gearmesh.lanes import any_lane, fma, load, magnitude, select, spread
-from gearmesh.taylor import (
+from gearmesh.solver.lanes import any_lane, fma, load, magnitude, select, spread
+from gearmesh.solver.taylor import (
     ORDER,
     REST,
     SIGN,

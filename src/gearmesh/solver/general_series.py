@@ -10,8 +10,8 @@ Experimental Mathematics 14, 2005).
 import numpy as np
 from numba import njit
 
-from gearmesh.general_roots import MAX_DEGREE
 from gearmesh.motion import CONTACT_LOSS, INVERSE_MESH, WHEEL_INERTIA, Y_2, Y_3, Z_2, Z_3
+from gearmesh.solver.general_roots import MAX_DEGREE
 
 CASE = np.dtype(
     [

@@ -1,8 +1,8 @@
 """Integration of one run in the six coordinates: the solver for every problem.
 
 Taylor series of high order in steps that end exactly at every jump of the laws
-(`gearmesh.general_series`, `gearmesh.general_kernel`). It serves the problems that the reduced
-system leaves out (run-out, profile deviation, truncated Fourier stiffness), and checks the others.
+(`general_series`, `general_kernel`). It serves the problems that the reduced system leaves out
+(run-out, profile deviation, truncated Fourier stiffness), and checks the others.
 """
 
 import itertools
@@ -11,12 +11,8 @@ import math
 import numpy as np
 from numba import njit
 
-from gearmesh import general_kernel, general_roots, general_series, motion, response, stiffness
-from gearmesh.compilation import persistent
+from gearmesh import motion, response, stiffness
 from gearmesh.friction import follows_run_out, pairs_in_contact
-from gearmesh.general_kernel import SAMPLE, SUMMARY
-from gearmesh.general_roots import MAX_DEGREE
-from gearmesh.general_series import CASE, MODE, STRETCH
 from gearmesh.motion import (
     CONTACT_LOSS,
     Problem,
@@ -26,6 +22,11 @@ from gearmesh.motion import (
     sum_and_difference,
 )
 from gearmesh.response import EXTREMUM, LOOSENING, Response, Samples, assemble
+from gearmesh.solver import general_kernel, general_roots, general_series
+from gearmesh.solver.compilation import persistent
+from gearmesh.solver.general_kernel import SAMPLE, SUMMARY
+from gearmesh.solver.general_roots import MAX_DEGREE
+from gearmesh.solver.general_series import CASE, MODE, STRETCH
 
 _EXTREMA_PER_PERIOD = 64
 _STEPS_PER_PERIOD = 2000

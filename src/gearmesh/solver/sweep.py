@@ -2,15 +2,25 @@
 
 Every lane goes its own way: it stops at its own switches, pitch points, boundaries, turning
 points and contact crossings, and takes the next run of the list as soon as it has finished one.
-The arithmetic between two stops is common (`gearmesh.taylor`, `gearmesh.events`); what follows a
-stop is told lane by lane here.
+The arithmetic between two stops is common (`taylor`, `events`); what follows a stop is told lane by
+lane here.
 """
 
 import numpy as np
 from numba import njit
 
-from gearmesh.events import bracket, crossing, fall
-from gearmesh.lanes import (
+from gearmesh.motion import CONTACT_LOSS, INVERSE_MESH, NORMAL_MESH
+from gearmesh.response import (
+    EXTREMUM_OVERFLOW,
+    MAXIMUM,
+    MEASURED,
+    MINIMUM,
+    NOT_FINITE,
+    OK,
+    STEP_LIMIT,
+)
+from gearmesh.solver.events import bracket, crossing, fall
+from gearmesh.solver.lanes import (
     any_lane,
     fma,
     lane_bits,
@@ -24,17 +34,7 @@ from gearmesh.lanes import (
     store_at,
     width_of,
 )
-from gearmesh.motion import CONTACT_LOSS, INVERSE_MESH, NORMAL_MESH
-from gearmesh.response import (
-    EXTREMUM_OVERFLOW,
-    MAXIMUM,
-    MEASURED,
-    MINIMUM,
-    NOT_FINITE,
-    OK,
-    STEP_LIMIT,
-)
-from gearmesh.taylor import (
+from gearmesh.solver.taylor import (
     BEARING_DAMPING,
     BEARING_STIFFNESS,
     CUBIC,

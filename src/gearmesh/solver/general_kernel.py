@@ -27,14 +27,24 @@ such a run ends as one that takes too many steps.
 import numpy as np
 from numba import njit
 
-from gearmesh.general_roots import (
+from gearmesh.motion import CONTACT_LOSS, INVERSE_MESH, NORMAL_MESH, Z_2, Z_3
+from gearmesh.response import (
+    EXTREMUM_OVERFLOW,
+    MAXIMUM,
+    MEASURED,
+    MINIMUM,
+    NOT_FINITE,
+    OK,
+    STEP_LIMIT,
+)
+from gearmesh.solver.general_roots import (
     TABLE_SHAPE,
     evaluate,
     evaluate_with_slope,
     first_change,
     refine,
 )
-from gearmesh.general_series import (
+from gearmesh.solver.general_series import (
     BRACKET,
     ELASTIC,
     FRICTION,
@@ -46,16 +56,6 @@ from gearmesh.general_series import (
     elastic_coefficient,
     expand,
     level,
-)
-from gearmesh.motion import CONTACT_LOSS, INVERSE_MESH, NORMAL_MESH, Z_2, Z_3
-from gearmesh.response import (
-    EXTREMUM_OVERFLOW,
-    MAXIMUM,
-    MEASURED,
-    MINIMUM,
-    NOT_FINITE,
-    OK,
-    STEP_LIMIT,
 )
 
 SUMMARY = np.dtype([*MEASURED, ("samples", np.int64)])
