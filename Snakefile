@@ -24,7 +24,9 @@ except InputError as error:
     job.tell(f"error: {error}")
     sys.exit(job.BAD_INPUT)
 
-PYTHON, STUDY = pipeline.python(), str(PLAN.config)
+# What runs the scripts is the environment of Snakemake, whatever the PATH is. Neither it nor the
+# name of the study is part of a command: both may change without a job having to run again.
+shell.prefix(pipeline.prefix(PLAN))
 
 
 report: "workflow/report/workflow.rst"

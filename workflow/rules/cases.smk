@@ -11,6 +11,8 @@ for batch in PLAN.batches:
         output:
             update(PLAN.case_files(batch.cases)),
             batch=PLAN.batch_file(batch),
+        log:
+            f"results/logs/cases_{batch.index}.log",
         resources:
             mem_mb=1000,
             runtime=30,
@@ -19,4 +21,4 @@ for batch in PLAN.batches:
             members=PLAN.members(batch),
             index=batch.index,
         shell:
-            "{PYTHON} {COMPUTE} {STUDY} {params.index}"
+            "python workflow/scripts/compute_cases.py $STUDY {params.index} 2>&1 | tee {log}"

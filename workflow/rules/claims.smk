@@ -9,11 +9,13 @@ rule printed:
         pipeline.checked_by("printed", PRINTED),
     output:
         paths.check_file("printed"),
+    log:
+        "results/logs/printed.log",
     params:
         recipe=PLAN.recipe,
         claims=pipeline.claims_digest("printed"),
     shell:
-        "{PYTHON} {PRINTED} {STUDY}"
+        "python workflow/scripts/check_printed.py $STUDY 2>&1 | tee {log}"
 
 
 rule ledger:
@@ -23,8 +25,10 @@ rule ledger:
         checks=[paths.check_file(name) for name in paths.CHECKED],
     output:
         report(paths.LEDGER, caption="../report/claims.rst", category="Claims"),
+    log:
+        "results/logs/ledger.log",
     shell:
-        "{PYTHON} {COLLECT} {input.checks}"
+        "python workflow/scripts/collect_claims.py {input.checks} 2>&1 | tee {log}"
 
 
 rule verdict:
@@ -34,5 +38,7 @@ rule verdict:
         paths.REPORT,
     output:
         paths.VERDICT,
+    log:
+        "results/logs/verdict.log",
     shell:
-        "{PYTHON} {VERDICT}"
+        "python workflow/scripts/give_verdict.py 2>&1 | tee {log}"

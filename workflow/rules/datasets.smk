@@ -9,8 +9,10 @@ rule datasets:
     output:
         str(paths.RESONANCE),
         str(paths.BIFURCATION),
+    log:
+        "results/logs/datasets.log",
     params:
         recipe=PLAN.recipe,
         grid=PLAN.grid,
     shell:
-        "{PYTHON} {DATASETS} {STUDY} {input.batches}"
+        "python workflow/scripts/make_datasets.py $STUDY {input.batches} 2>&1 | tee {log}"

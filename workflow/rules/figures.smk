@@ -18,11 +18,13 @@ rule thresholds:
         pipeline.sources(THRESHOLDS),
     output:
         str(paths.THRESHOLDS),
+    log:
+        "results/logs/thresholds.log",
     params:
         recipe=PLAN.recipe,
         variants=PLAN.variants,
     shell:
-        "{PYTHON} {THRESHOLDS} {STUDY}"
+        "python workflow/scripts/locate_thresholds.py $STUDY 2>&1 | tee {log}"
 
 
 rule fig1:
@@ -32,10 +34,10 @@ rule fig1:
     output:
         report(paths.FIGURES / "fig1.png", caption="../report/fig1.rst", category="Figures"),
         paths.FIGURES / "fig1.svg",
-    params:
-        place=str(paths.FIGURES / "fig1"),
+    log:
+        "results/logs/fig1.log",
     shell:
-        "{PYTHON} {FIG1} {params.place}"
+        "python workflow/scripts/draw_fig1.py {output} 2>&1 | tee {log}"
 
 
 for figure in paths.NOTEBOOK_NAMES:
@@ -52,23 +54,21 @@ for figure in paths.NOTEBOOK_NAMES:
             thresholds=paths.THRESHOLDS,
             courses=PLAN.time_courses(SHOWN.get(figure, [])),
         output:
-            report(
+            png=report(
                 paths.FIGURES / f"{figure}.png",
                 caption=f"../report/{figure}.rst",
                 category="Figures",
             ),
-            paths.FIGURES / f"{figure}.svg",
+            svg=paths.FIGURES / f"{figure}.svg",
             checks=paths.check_file(figure),
         log:
             paths.executed_notebook(figure),
         params:
             recipe=PLAN.recipe,
             claims=pipeline.claims_digest(figure),
-            place=str(paths.FIGURES / figure),
-            cases=str(paths.CASES),
             ledger=str(paths.CLAIMS),
         shell:
-            "{PYTHON} {NOTEBOOK} {input.notebook} {log} configuration={STUDY}"
+            "python workflow/scripts/run_notebook.py {input.notebook} {log} configuration=$STUDY"
             " resonance={input.resonance} bifurcation={input.bifurcation}"
-            " thresholds={input.thresholds} cases={params.cases} ledger={params.ledger}"
-            " figure={params.place} checks={output.checks}"
+            " thresholds={input.thresholds} cases=results/cases ledger={params.ledger}"
+            " figure={output.png} checks={output.checks}"

@@ -24,6 +24,8 @@ for name, stated in DESIGNS.designs.items():
             layout.places_file(name) if stated.around else [],
         output:
             layout.FOLDER / name / r"batch-{index,\d+}.nc",
+        log:
+            f"results/logs/identify_{name}_{{index}}.log",
         resources:
             mem_mb=1500,
             runtime=30,
@@ -34,7 +36,8 @@ for name, stated in DESIGNS.designs.items():
             stated=DESIGNS.sampling(name),
             design=name,
         shell:
-            "{PYTHON} {MEASURE} {params.settings} {STUDY} {params.design} {wildcards.index} {output}"
+            "python workflow/scripts/identify_batch.py {params.settings} $STUDY {params.design}"
+            " {wildcards.index} {output} 2>&1 | tee {log}"
 
     if stated.around:
 
@@ -47,12 +50,15 @@ for name, stated in DESIGNS.designs.items():
                 batches=layout.batch_files(DESIGNS, *layout.family(DESIGNS, stated.around)),
             output:
                 layout.places_file(name),
+            log:
+                f"results/logs/identify_{name}_places.log",
             params:
                 settings=str(layout.SETTINGS),
                 stated=DESIGNS.sampling(name),
                 design=name,
             shell:
-                "{PYTHON} {PLACES} {params.settings} {params.design} {input.batches}"
+                "python workflow/scripts/identify_places.py {params.settings} {params.design}"
+                " {input.batches} 2>&1 | tee {log}"
 
 
 rule identification_dataset:
@@ -61,23 +67,25 @@ rule identification_dataset:
         batches=layout.batch_files(DESIGNS, *DESIGNS.designs),
     output:
         layout.DATASET,
+    log:
+        "results/logs/identification_dataset.log",
     shell:
-        "{PYTHON} {GATHER} {input.batches}"
+        "python workflow/scripts/identify_dataset.py {input.batches} 2>&1 | tee {log}"
 
 
 rule identified:
     input:
         pipeline.sources(INFER),
-        layout.SETTINGS,
         paths.CLAIMS,
         layout.DATASET,
         [layout.places_file(name) for name, stated in DESIGNS.designs.items() if stated.around],
+        settings=layout.SETTINGS,
     output:
         layout.FOUND,
-    params:
-        settings=str(layout.SETTINGS),
+    log:
+        "results/logs/identified.log",
     shell:
-        "{PYTHON} {INFER} {params.settings}"
+        "python workflow/scripts/identify_parameters.py {input.settings} 2>&1 | tee {log}"
 
 
 rule identification_notebook:
@@ -94,11 +102,10 @@ rule identification_notebook:
         layout.NOTEBOOK,
     params:
         recipe=PLAN.recipe,
-        figures=str(layout.FIGURES),
     shell:
-        "{PYTHON} {RUN} notebooks/identification.ipynb {log} configuration={STUDY}"
-        " table={input.table} samples={input.samples} ledger={input.ledger}"
-        " settings={input.settings} figures={params.figures}"
+        "python workflow/scripts/run_notebook.py notebooks/identification.ipynb {log}"
+        " configuration=$STUDY table={input.table} samples={input.samples}"
+        " ledger={input.ledger} settings={input.settings}"
 
 
 rule identify:

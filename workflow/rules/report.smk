@@ -1,4 +1,6 @@
 # The report page, and the captions of `snakemake --report`.
+from gearmesh.identification import layout
+
 REPORT = pipeline.script("build_report")
 
 
@@ -7,6 +9,7 @@ rule report:
         sources=pipeline.sources(REPORT),
         templates=pipeline.templates(),
         captions=pipeline.captions(),
+        identified=[layout.IDENTIFIED, layout.SETTINGS, paths.CLAIMS],
         ledger=paths.LEDGER,
         resonance=paths.RESONANCE,
         figures=[file for name in paths.FIGURE_NAMES for file in paths.figure_files(name)],
@@ -14,7 +17,9 @@ rule report:
     output:
         report(paths.REPORT, caption="../report/page.rst", category="Report"),
         [paths.notebook_page(name) for name in paths.NOTEBOOK_NAMES],
+    log:
+        "results/logs/report.log",
     params:
         study=PLAN.stated,
     shell:
-        "{PYTHON} {REPORT} {STUDY}"
+        "python workflow/scripts/build_report.py $STUDY 2>&1 | tee {log}"

@@ -1,6 +1,7 @@
 """Draw Fig. 1, the kinematic pair with its symbols: it needs no data."""
 
 import argparse
+from pathlib import Path
 
 from gearmesh.figures import canvas, fig1
 from gearmesh.job import job
@@ -9,10 +10,11 @@ from gearmesh.job import job
 def main() -> None:
     """Run as a job."""
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("figure", help="place, without suffix")
+    parser.add_argument("png", type=Path)
+    parser.add_argument("svg", type=Path, help="beside it, with the same name")
     options = parser.parse_args()
     with job("figures"):
-        canvas.save(fig1.draw(), options.figure)
+        canvas.save(fig1.draw(), options.png.with_suffix(""))
 
 
 if __name__ == "__main__":

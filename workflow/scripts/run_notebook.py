@@ -97,6 +97,8 @@ def main() -> None:
         silence_kernels(Path(private))
         with job("figures"):
             parameters = dict(item.split("=", 1) for item in options.parameters)
+            if "figure" in parameters:  # notebooks write a PNG and an SVG of one name
+                parameters["figure"] = parameters["figure"].removesuffix(".png")
             if not execute(options.notebook, options.executed, parameters):
                 sys.exit(1)
 
