@@ -30,9 +30,11 @@ _CHUNK = 256
 
 def _build_sweep(sources: str, cache: bool):
     @njit(cache=cache, nogil=True)
-    def compiled(runs, summaries, strobes, extrema, samples, samples_per_period):
+    def compiled(work, runs, summaries, strobes, extrema, samples, samples_per_period):
         sources  # noqa: B018 (see persistent)
-        sweep.sweep(lanes.zeros8(), runs, summaries, strobes, extrema, samples, samples_per_period)
+        sweep.sweep(
+            lanes.zeros8(), work, runs, summaries, strobes, extrema, samples, samples_per_period
+        )
 
     return compiled
 
@@ -154,7 +156,7 @@ def _simulate_reduced(problems, tolerance, samples_per_period, estimate_errors) 
     sampled = n if samples_per_period else 0
     row = kept * samples_per_period + lanes.WIDEST
     samples = np.empty((sampled, sweep.N_SAMPLE_ROWS * row))
-    _sweep(runs, summaries, strobes, extrema, samples, samples_per_period)
+    _sweep(_workspace(), runs, summaries, strobes, extrema, samples, samples_per_period)
     return [
         assemble(
             summaries[i],
@@ -169,6 +171,14 @@ def _simulate_reduced(problems, tolerance, samples_per_period, estimate_errors) 
         )
         for i, problem in enumerate(problems)
     ]
+
+
+def _workspace() -> np.ndarray:
+    """Return the workspace of the sweep; a row that straddles two cache lines costs two loads."""
+    row = 8 * lanes.WIDEST
+    raw = np.zeros((taylor.N_ROWS + 1) * lanes.WIDEST)
+    first = -raw.ctypes.data % row // 8
+    return raw[first : first + taylor.N_ROWS * lanes.WIDEST]
 
 
 def _samples(problem, rows, per_period) -> Samples:

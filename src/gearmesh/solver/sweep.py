@@ -474,15 +474,15 @@ def _sample(like, work, lane, runs, places, samples, per_period):
 
 
 @njit
-def sweep(like, runs, summaries, strobes, extrema, samples, samples_per_period):
+def sweep(like, work, runs, summaries, strobes, extrema, samples, samples_per_period):
     """Integrate all `runs` (see `RUN`); results stand at the index of the run.
 
+    `work` has N_ROWS rows of as many elements as there are lanes, best aligned to one row.
     `summaries` has one row for each run. `strobes` of shape (l, periods + 1, 2), `extrema` of shape
     (m, capacity) and `samples` of shape (n, N_SAMPLE_ROWS * row) serve the first l, m and n runs;
     a row of samples has room for one chunk of lanes more than it holds.
     """
     width = width_of(like)
-    work = np.zeros(N_ROWS * width)
     places = np.zeros(width, dtype=PLACE)
     pending = 0
     active = 0

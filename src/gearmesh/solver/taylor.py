@@ -183,13 +183,15 @@ def expand(like, work, powers):
 
 @njit(inline="never")
 def choose_step(like, work):
-    """Write the step for which the last two terms stay below the tolerance, to the next stop."""
+    """Write the step for which the last terms stay below the tolerance, to the next stop."""
     log_tolerance = load(like, work, LOG_TOLERANCE)
     tiny = spread(like, 1e-290)
     longest = load(like, work, LONGEST)
     step = load(like, work, REMAINING)
     step = select(longest < step, longest, step)
-    for degree in (ORDER - 1, ORDER):
+    # Three terms: from a turning point on, cubic damping leaves every third one only.
+    for back in range(3):
+        degree = ORDER - back
         size = magnitude(load(like, work, Y + degree)) + magnitude(load(like, work, U + degree))
         room = (log_tolerance - coarse_log2(size + tiny)) * (1.0 / degree)
         bound = coarse_exp2(room)
