@@ -38,6 +38,7 @@ lint: $(STAMP) ## formats and slips; notebooks without outputs
 
 identify: $(STAMP) ## infer the open parameters from the claims
 	$(SNAKEMAKE) identify
+	cp results/identification/identified.yaml config/identified.yaml
 
 lock: ## resolve the requirements again (needs uv)
 	$(UV_COMPILE) requirements.in requirements-dev.in --output-file requirements.lock

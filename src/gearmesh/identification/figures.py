@@ -16,6 +16,7 @@ from gearmesh.figures.canvas import WIDTH, styled
 from gearmesh.identification.settings import Range
 from gearmesh.identification.store import Samples
 from gearmesh.identification.wording import statements, weight_of_claims
+from gearmesh.thresholds import FIRST, LAST
 
 SYMBOLS = {
     "backlash": "$s/y_{st}$",
@@ -25,7 +26,7 @@ SYMBOLS = {
     "bearing_damping_ratio": "$\\zeta_b$",
     "friction_coefficient": "$f_T$",
     "initial_phase": "$p_0$",
-    "initial_velocity": "$y'(0)$",
+    "initial_velocity": "$y$′(0)",
     "kind": "run",
 }
 
@@ -109,11 +110,18 @@ def draw_supports(samples: Samples, ledger: Sequence[Claim]) -> Figure:
     _scatter(left, samples, "body_mass", "bearing_stiffness", failing)
     _scatter(right, samples, "damping_length", "backlash", failing)
     mass = np.array(left.get_xlim())
-    for nu, name in ((0.6, "0.6"), (1.2, "1.2")):
+    for nu, name in ((FIRST, "0.6"), (LAST, "1.2")):
         # A body on its supports swings by itself at nu_s = sqrt(c_b/C_s m_red/m).
         left.plot(mass, nu**2 * mass, color=palette.RED, lw=0.8)
-        low = left.get_ylim()[0]
-        left.text(1.1 * low / nu**2, low, name, color=palette.RED, fontsize=7, rotation=45)
+        left.annotate(
+            name,
+            (30.0, nu**2 * 30.0),
+            color=palette.RED,
+            fontsize=7,
+            ha="center",
+            va="center",
+            bbox={"fc": "white", "ec": "none", "pad": 0.8},
+        )
     handles = [
         Line2D([], [], ls="none", marker="o", ms=size, mec="none", color=colour, label=label)
         for label, colour, size in (
@@ -139,6 +147,9 @@ def _scatter(axes: Axes, samples: Samples, x: str, y: str, failing: np.ndarray) 
         axes.scatter(*places, s=size, color=colour, lw=0)
     axes.set_xscale("log")
     axes.set_yscale("log")
+    axes.set_xticks(_TICKS[x], [f"{tick:g}" for tick in _TICKS[x]])
+    axes.set_yticks(_TICKS[y], [f"{tick:g}" for tick in _TICKS[y]])
+    axes.minorticks_off()
     axes.set_xlim(samples.values[x].min(), samples.values[x].max())
     axes.set_ylim(samples.values[y].min(), samples.values[y].max())
     axes.set_xlabel(SYMBOLS[x])

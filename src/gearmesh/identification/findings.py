@@ -237,7 +237,8 @@ def sensitivities(analysis: Analysis) -> dict[str, object]:
             index = sensitivity.index(even.places[factor], values, slices)
             found[column][factor] = {
                 "index": _rounded(index.value),
-                "interval": [_rounded(index.low), _rounded(index.high)],
+                "low": _rounded(index.low),
+                "high": _rounded(index.high),
                 "chance": _rounded(index.chance),
             }
     return found

@@ -70,22 +70,20 @@ class Recovery:
     Attributes
     ----------
     inside : dict of str to bool
-        Factor -> whether its stated value lies in the region; the regions are such that all
-        should hold together with the probability of a region.
+        Factor -> whether its stated value lies in its region.
     width : dict of str to float
         Factor -> length of its region, as a share of the prior's.
+    recovered : bool
+        Whether all stated values lie in regions so wide that all together have the probability
+        of one.
     found : Fit
         The fit.
     """
 
     inside: dict[str, bool]
     width: dict[str, float]
+    recovered: bool
     found: Fit
-
-    @property
-    def recovered(self) -> bool:
-        """Whether every stated value lies in its region."""
-        return all(self.inside.values())
 
 
 def recover(
@@ -114,10 +112,12 @@ def recover(
         Weights that make the samples an even design.
     """
     found = fit(evidence(paper(truth, stated), stated, measured), prior)
+    alone = {name: region(places[name], found.weights) for name in place}
     level = joint_level(len(place))
-    regions = {name: region(places[name], found.weights, level) for name in place}
+    together = {name: region(places[name], found.weights, level) for name in place}
     return Recovery(
-        {name: low <= place[name] <= high for name, (low, high) in regions.items()},
-        {name: high - low for name, (low, high) in regions.items()},
+        {name: low <= place[name] <= high for name, (low, high) in alone.items()},
+        {name: high - low for name, (low, high) in alone.items()},
+        all(low <= place[name] <= high for name, (low, high) in together.items()),
         found,
     )

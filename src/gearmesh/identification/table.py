@@ -16,15 +16,28 @@ HEADER = """\
 # edit. Shares are of the plausible space, regions have probability 0.95.
 """
 
+_SHORT = 90
+
 Findings = dict[str, Any]
 """See `gearmesh.identification.findings.findings`."""
 
 
+class _Dumper(yaml.SafeDumper):
+    """Writes what is short in one line, and everything where it stands, without anchors."""
+
+    def represent_mapping(self, tag, mapping, flow_style=None):
+        return super().represent_mapping(tag, mapping, len(str(mapping)) <= _SHORT)
+
+    def represent_sequence(self, tag, sequence, flow_style=None):
+        return super().represent_sequence(tag, sequence, len(str(sequence)) <= _SHORT)
+
+    def ignore_aliases(self, data):
+        return True
+
+
 def write(path: Path, findings: Findings) -> None:
     """Write findings, the same bytes for the same findings."""
-    text = yaml.safe_dump(
-        findings, sort_keys=False, allow_unicode=True, width=100, default_flow_style=None
-    )
+    text = yaml.dump(findings, Dumper=_Dumper, sort_keys=False, allow_unicode=True, width=100)
     write_text(path, HEADER + text)
 
 
