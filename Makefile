@@ -22,6 +22,7 @@ help: ## show this list
 
 reproduce: $(STAMP) ## the paper: cases, datasets, figures, ledger and report
 	$(SNAKEMAKE)
+	@cat results/verdict.txt
 
 test: $(STAMP) ## the whole test suite
 	$(BIN)/python -m pytest
