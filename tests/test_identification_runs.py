@@ -129,14 +129,15 @@ def test_the_pipeline_identifies(small, monkeypatch):
     }
     found = table.read(layout.FOUND)
     assert list(found["claims"]) == survey.tested_claims()
+    assert found["samples"] == {name: stated.points for name, stated in settings.designs.items()}
 
 
 def test_a_lost_batch_alone_is_measured_again(small):
     (small.folder / layout.batch_file("natural", 0)).unlink()
-    planned = small.run("identify", "--dry-run").stdout
+    planned = small.plan("identify")
     assert "identify_natural" in planned
     assert "identify_survey" not in planned
 
 
 def test_the_default_target_does_not_identify(small):
-    assert "identify" not in small.run("all", "--dry-run").stdout
+    assert not [rule for rule in small.plan("all") if "identif" in rule]

@@ -189,9 +189,13 @@ def _relative(file: Path) -> str:
 
 
 def prefix(plan: Plan) -> str:
-    """Return what goes before each shell command: where `python` is, and which study runs."""
+    """Return what goes before each shell command: where `python` is, and which study runs.
+
+    It takes the place of Snakemake's own prefix, so it repeats that a command fails with any part
+    of it: the logs are written through a pipe.
+    """
     folder = shlex.quote(str(Path(sys.executable).parent))
-    return f"export PATH={folder}:$PATH STUDY={shlex.quote(str(plan.config))}; "
+    return f"set -euo pipefail; export PATH={folder}:$PATH STUDY={shlex.quote(str(plan.config))}; "
 
 
 def _digest(stated: object) -> str:

@@ -276,16 +276,16 @@ def predictions(analysis: Analysis, family: Family) -> dict[str, object]:
     ]
     return {
         "fits": len(made),
-        "gain in bits": _rounded(float(np.mean([p.gain for p in made]))),
-        "helped": _rounded(float(np.mean([p.gain > 0 for p in made]))),
+        "gain in bits": _rounded(_mean([p.gain for p in made])),
+        "helped": _rounded(_mean([p.gain > 0 for p in made])),
         "conditional claims": {
-            "before": _rounded(float(np.mean([before for before, _ in uncertain]))),
-            "after": _rounded(float(np.mean([after for _, after in uncertain]))),
+            "before": _rounded(_mean([before for before, _ in uncertain])),
+            "after": _rounded(_mean([after for _, after in uncertain])),
         },
         "numbers": {
             "level": prediction.COVERED,
-            "covered": _rounded(float(np.mean(covered))),
-            "width": _rounded(float(np.mean(narrowed))),
+            "covered": _rounded(_mean(covered)),
+            "width": _rounded(_mean(narrowed)),
         },
     }
 
@@ -322,20 +322,21 @@ def recoveries(analysis: Analysis, family: Family) -> dict[str, object]:
 
 
 def run_out(analysis: Analysis) -> dict[str, object]:
-    """Return for each claim up to which eccentricity (the larger one, in y_st) it holds."""
+    """Return for each claim up to which eccentricity, the larger one in y_st, it always holds."""
     samples = analysis.samples.of(RUN_OUT)
     larger = np.maximum(samples.values["eccentricity_3"], samples.values["eccentricity_2"])
     found = {}
     for name, held in analysis.held(samples).items():
         fails = larger[~held]
         below = larger[larger < fails.min()] if fails.size else larger
-        found[name] = {
-            "share": _rounded(float(held.mean())),
-            "holds up to": _rounded(float(below.max())) if below.size else 0.0,
-        }
+        found[name] = _rounded(float(below.max())) if below.size else 0.0
     return found
 
 
-def _rounded(value: float) -> float:
-    """Keep four significant digits: the samples know no more."""
-    return float(f"{value:.4g}")
+def _mean(values: Sequence[float]) -> float:
+    return float(np.mean(values)) if values else float("nan")
+
+
+def _rounded(value: float) -> float | None:
+    """Keep four significant digits, the samples know no more; None for what there is none of."""
+    return float(f"{value:.4g}") if np.isfinite(value) else None

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from gearmesh.identification.inference import Fit, fit, predictive, quantile, share
+from gearmesh.identification.inference import Fit, fit, predictive, quantile
 from gearmesh.identification.wording import Columns, Statement, columns_of
 
 COVERED = 0.9
@@ -95,6 +95,7 @@ def predict(
     prior : ndarray, shape (n_samples,)
         Weights that make the samples an even design.
     """
+    before = Fit(prior / prior.sum(), 0)
     found = fit([weight[name] for name in fitted], prior)
     numbers = {
         column: statement
@@ -109,7 +110,7 @@ def predict(
         covered[column] = low <= statement.high and high >= statement.low
         narrowed[column] = (high - low) / (last - first) if last > first else 1.0
     return Prediction(
-        {name: share(weight[name] > 0, prior)[0] for name in held_out},
+        {name: predictive(weight[name] > 0, before) for name in held_out},
         {name: predictive(weight[name] > 0, found) for name in held_out},
         covered,
         narrowed,

@@ -4,7 +4,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from gearmesh.claims import Claim
+from gearmesh.claims import REPRODUCED, Claim
 from gearmesh.identification.design import Sample, stated
 from gearmesh.identification.settings import FACTORS, Settings
 from gearmesh.parameters import Parameters
@@ -52,9 +52,9 @@ def section(
     study : Parameters
         The values of the study, shown beside the regions.
     """
-    run_out = found["run-out"]
-    bears = {name: entry["holds up to"] for name, entry in run_out.items() if entry["share"] > 0}
-    least = min(bears.values(), default=0.0)
+    expected = [claim.id for claim in ledger if claim.expected_status == REPRODUCED]
+    bears = {name: most for name, most in found["run-out"].items() if name in expected}
+    least = min(bears.values())
     return (
         environment()
         .get_template("identification.html.j2")

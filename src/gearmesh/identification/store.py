@@ -147,6 +147,7 @@ def open_file(path: Path) -> xr.Dataset:
     """Read a file into memory; raises InputError if it is missing or damaged."""
     try:
         with xr.open_dataset(path, engine="netcdf4") as content:
-            return content.load()
+            # How a text was stored would cut short the longer ones that join it.
+            return content.load().drop_encoding()
     except (OSError, ValueError) as error:
         raise InputError(f"{path}: missing or damaged ({error}); run make identify") from None
