@@ -132,11 +132,12 @@ def test_the_pipeline_identifies(small, monkeypatch):
     assert found["samples"] == {name: stated.points for name, stated in settings.designs.items()}
 
 
-def test_a_lost_batch_alone_is_measured_again(small):
-    (small.folder / layout.batch_file("natural", 0)).unlink()
+def test_a_run_that_was_stopped_goes_on(small):
+    for made in (layout.batch_file("natural", 0), layout.DATASET, layout.FOUND):
+        (small.folder / made).unlink()
     planned = small.plan("identify")
-    assert "identify_natural" in planned
-    assert "identify_survey" not in planned
+    assert planned >= {"identify_natural", "identification_dataset", "identified"}
+    assert not planned & {"identify_survey", "identify_truth"}
 
 
 def test_the_default_target_does_not_identify(small):

@@ -26,7 +26,7 @@ RUN_LOCK = paths.RESULTS / ".run.lock"
 JOBS_LOCK = paths.RESULTS / ".jobs.lock"
 JOURNAL = paths.RESULTS / ".journal"
 
-STAGES = ("cases", "datasets", "thresholds", "figures", "ledger", "report")
+STAGES = ("cases", "datasets", "thresholds", "figures", "ledger", "report", "identification")
 """Stages of the pipeline, in their order."""
 
 BAD_INPUT = 2
