@@ -63,29 +63,42 @@ def parameters_of(sample: Mapping[str, float | str], study: Parameters) -> Param
 
 def left_alone(design: Design, study: Parameters) -> str:
     """Return a digest of all parameters of a study that a design leaves alone."""
-    sample = stated(study) | NEUTRAL | dict.fromkeys(design.vary, 0.0)
+    sample = stated(study) | dict.fromkeys(design.vary, 0.0)
     return parameters_of(sample, study).digest()
 
 
 def unit_points(design: Design) -> np.ndarray:
-    """Return the scrambled Sobol' points of a design, shape (points, varied factors)."""
+    """Return the scrambled Sobol' points of a design, shape (points, varied factors).
+
+    Where a sample varies one factor only, the places of the others are NaN.
+    """
     # Imported here: the pipeline looks at designs without drawing them, and this takes its time.
     from scipy.stats import qmc
 
-    return qmc.Sobol(len(design.vary), seed=design.seed).random(design.points)
+    points = qmc.Sobol(len(design.vary), seed=design.seed).random(design.points)
+    if design.one_at_a_time:
+        # In turn by blocks: only neighbours in the sequence spread evenly.
+        turn = np.arange(design.points) * len(design.vary) // design.points
+        points[turn[:, None] != np.arange(len(design.vary))] = np.nan
+    return points
 
 
 def samples(
     points: np.ndarray, design: Design, settings: Settings, study: Parameters
 ) -> list[Sample]:
-    """Turn points of the unit cube, one row each, into samples."""
-    base = stated(study) | NEUTRAL | design.fixed
+    """Turn points of the unit cube, one row each, into samples.
+
+    What a point says nothing about has the value of the study, or the one that removes its effect.
+    """
+    base = stated(study) | design.fixed
     return [base | _values(row, design.vary, settings) for row in points]
 
 
 def _values(row: Sequence[float], vary: Sequence[str], settings: Settings) -> Sample:
     values: Sample = {}
     for name, unit in zip(vary, row, strict=True):
+        if np.isnan(unit):
+            continue
         if name == "kind":
             values[name] = KINDS[min(int(unit * len(KINDS)), len(KINDS) - 1)]
         else:

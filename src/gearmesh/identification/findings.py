@@ -6,7 +6,7 @@ from functools import cached_property
 
 import numpy as np
 
-from gearmesh.claims import Claim
+from gearmesh.claims import REPRODUCED, Claim
 from gearmesh.identification import inference, prediction, sensitivity, synthetic
 from gearmesh.identification.focus import Cloud, prior_weights
 from gearmesh.identification.inference import ENOUGH, Fit, effective_size
@@ -17,8 +17,11 @@ from gearmesh.identification.wording import (
     weight_of_claims,
 )
 
-SURVEY, NATURAL, TRUTH, RUN_OUT = "survey", "natural", "truth", "run_out"
-"""Even designs: the plausible space, the natural reading, synthetic papers, run-out."""
+SURVEY, NATURAL, TRUTH = "survey", "natural", "truth"
+"""Even designs: the plausible space, the natural reading, synthetic papers."""
+
+BESIDE, RUN_OUT = "beside", "run_out"
+"""Designs beside the study: one parameter at a time, and run-out."""
 
 CUTS = 50
 """Random cuts of the claims into two halves."""
@@ -154,6 +157,7 @@ def findings(analysis: Analysis) -> dict[str, object]:
         "sensitivity": sensitivities(analysis),
         "prediction": predictions(analysis, survey),
         "recovery": recoveries(analysis, survey),
+        "beside": beside(analysis),
         "run-out": run_out(analysis),
     }
 
@@ -319,6 +323,40 @@ def recoveries(analysis: Analysis, family: Family) -> dict[str, object]:
         "samples": _rounded(float(np.median([one.found.size for one in made]))),
         "forgiven": _rounded(float(np.median([one.found.forgiven for one in made]))),
     }
+
+
+def beside(analysis: Analysis) -> dict[str, object]:
+    """Return how far each parameter alone may be moved from its value in the study.
+
+    Until then the claims hold that the ledger expects to be reproduced.
+    """
+    samples = analysis.samples.of(BESIDE)
+    held = analysis.held(samples)
+    expected = [c.id for c in analysis.ledger if c.expected_status == REPRODUCED]
+    found = {}
+    for factor in analysis.settings.designs[BESIDE].vary:
+        moved = np.flatnonzero(np.isfinite(samples.places[factor]))
+        values = samples.values[factor]
+        others = values[np.isnan(samples.places[factor])]
+        order = moved[np.argsort(values[moved])]
+        below = order[values[order] <= others[0]][::-1]
+        above = order[values[order] > others[0]]
+        found[factor] = {
+            side: _stretch(values, order, held, expected)
+            for side, order in (("down", below), ("up", above))
+        }
+    return found
+
+
+def _stretch(values, order, held, expected) -> dict[str, object]:
+    """Return how far one may go along samples, in their order, and which claims fail then."""
+    last = None
+    for i in order:
+        failing = [name for name in expected if not held[name][i]]
+        if failing:
+            return {"to": last, "then fail": failing}
+        last = _rounded(float(values[i]))
+    return {"to": last, "then fail": []}
 
 
 def run_out(analysis: Analysis) -> dict[str, object]:

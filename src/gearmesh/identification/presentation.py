@@ -10,7 +10,8 @@ from gearmesh.identification.settings import FACTORS, Settings
 from gearmesh.parameters import Parameters
 from gearmesh.presentation import environment, number
 
-_DIGITS = 3
+NARROW = 0.6
+"""A region shorter than this share of the plausible range says something about a parameter."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -22,6 +23,7 @@ class ParameterRow:
     region: str
     natural: str
     stated: str
+    alone: str
 
 
 @dataclass(frozen=True, slots=True)
@@ -61,37 +63,58 @@ def section(
         .render(
             found=found,
             regions=found["regions"],
-            parameters=list(parameter_rows(found["regions"], settings, stated(study))),
+            parameters=list(parameter_rows(found, settings, stated(study))),
             claims=claim_rows(found["claims"], ledger),
+            pinned=[FACTORS[name] for name in _pinned(found["regions"]["plausible"])],
             least_run_out=least,
             fragile=[name for name, most in bears.items() if most == least],
         )
     )
 
 
+def _pinned(regions: Mapping[str, Any]) -> list[str]:
+    """Return the parameters that the claims pin down."""
+    factors = regions["factors"].items()
+    return [name for name, found in factors if found.get("of the prior", 1.0) < NARROW]
+
+
 def parameter_rows(
-    regions: Mapping[str, Any], settings: Settings, values: Sample
+    found: Mapping[str, Any], settings: Settings, values: Sample
 ) -> Iterator[ParameterRow]:
     """Yield a row for each parameter of the plausible space."""
-    natural = regions["natural"]["factors"]
-    for name, found in regions["plausible"]["factors"].items():
+    natural = found["regions"]["natural"]["factors"]
+    for name, region in found["regions"]["plausible"]["factors"].items():
         if name == "kind":
-            likely = ", ".join(f"{kind} {round(100 * p)} %" for kind, p in found.items())
-            yield ParameterRow(FACTORS[name], "any", likely, "separate", str(values[name]))
+            likely = ", ".join(f"{kind} {round(100 * p)} %" for kind, p in region.items())
+            yield ParameterRow(FACTORS[name], "any", likely, "separate", str(values[name]), "")
             continue
         bounds = settings.ranges[name]
         yield ParameterRow(
             FACTORS[name],
             _interval([bounds.low, bounds.high]),
-            _interval(found["region"]),
-            _interval(natural[name]["region"]) if name in natural else number(bounds.least or 0.0),
-            number(float(values[name]), _DIGITS),
+            _interval(region["region"]),
+            _interval(natural[name]["region"]) if name in natural else _number(bounds.least or 0.0),
+            _number(float(values[name])),
+            _stretch(found["beside"].get(name), float(values[name])),
         )
 
 
 def _interval(ends: Sequence[float]) -> str:
-    low, high = (number(end, _DIGITS) for end in ends)
+    low, high = map(_number, ends)
     return f"{low} to {high}"
+
+
+def _stretch(beside: Mapping[str, Any] | None, value: float) -> str:
+    """Say how far a parameter may be moved alone, and what fails then."""
+    if beside is None:
+        return ""
+    ends = [value if beside[side]["to"] is None else beside[side]["to"] for side in ("down", "up")]
+    fails = {claim for side in beside.values() for claim in side["then fail"]}
+    return _interval(ends) + (f" ({', '.join(sorted(fails))})" if fails else "")
+
+
+def _number(value: float) -> str:
+    return number(float(f"{value:.3g}"))
 
 
 def claim_rows(claims: Mapping[str, Any], ledger: Sequence[Claim]) -> list[ClaimRow]:

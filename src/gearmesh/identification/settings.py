@@ -64,8 +64,8 @@ class Range(Section):
 class Design(Section):
     """A set of samples.
 
-    `fixed` factors keep one value. `around` names the design whose best samples this one
-    surrounds, in place of filling the whole space.
+    `fixed` factors keep one value, all others that of the study. `around` names the design whose
+    best samples this one surrounds, in place of filling the whole space.
     """
 
     purpose: str = Field(min_length=1)
@@ -75,6 +75,7 @@ class Design(Section):
     vary: tuple[str, ...]
     fixed: dict[str, float | str] = Field(default_factory=dict)
     around: str | None = None
+    one_at_a_time: bool = Field(False, description="whether a sample varies one factor only")
 
     @field_validator("points")
     @classmethod
