@@ -37,9 +37,9 @@ def parameter_cell(notebook):
     return found
 
 
-def test_every_figure_but_the_drawing_has_a_notebook(root):
+def test_every_figure_but_the_drawing_has_a_notebook_and_so_has_the_identification(root):
     found = sorted(path.stem for path in (root / paths.NOTEBOOKS).glob("*.ipynb"))
-    assert found == sorted(set(paths.FIGURE_NAMES) - {"fig1"})
+    assert found == sorted({*paths.FIGURE_NAMES, "identification"} - {"fig1"})
 
 
 @each_notebook

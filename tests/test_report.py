@@ -72,7 +72,8 @@ def entries(root, study):
 def built(root, small_run, small_study, entries):
     """Write the report of the smoke study, with stand-ins for its figures and notebooks."""
     write_entries(small_run / paths.LEDGER, entries)
-    (small_run / "workflow").symlink_to(root / "workflow")
+    for folder in ("workflow", "config"):
+        (small_run / folder).symlink_to(root / folder)
     for name in paths.NOTEBOOK_NAMES:
         executed = small_run / paths.executed_notebook(name)
         executed.parent.mkdir(exist_ok=True)
