@@ -31,6 +31,7 @@ def main() -> None:
         if outcome.unexpected:
             print(text, end="", file=sys.stderr)
             sys.exit(UNEXPECTED)
+        print(outcome)
         write_text(paths.VERDICT, text)
 
 
