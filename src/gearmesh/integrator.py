@@ -7,9 +7,10 @@ truncated Fourier series of the stiffness.
 """
 
 import math
-from collections.abc import Sequence
-from functools import lru_cache
-from itertools import pairwise
+from collections.abc import Callable, Sequence
+from functools import cached_property, lru_cache
+from itertools import accumulate, pairwise
+from typing import NamedTuple
 
 import numpy as np
 from numba import njit
@@ -17,8 +18,8 @@ from numba import njit
 from gearmesh import motion, response
 from gearmesh.friction import mesh_gamma
 from gearmesh.motion import Problem
-from gearmesh.response import LOOSENING, Response, Samples, assemble
-from gearmesh.solver import events, lanes, sweep, taylor
+from gearmesh.response import LOOSENING, Response, assemble
+from gearmesh.solver import events, lanes, stops, sweep, taylor, workspace
 from gearmesh.solver.compilation import persistent
 from gearmesh.stiffness import in_double_contact, switch_phases
 
@@ -26,6 +27,8 @@ _EXTREMA_PER_PERIOD = 64
 # Equal wheels: the pitch point halves the single contact.
 _PITCH_PHASE = 0.5
 _CHUNK = 256
+# Samples that are closer to a switch than rounding can tell are on it.
+_ON_EDGE = 1e-9
 
 
 def _build_sweep(sources: str, cache: bool):
@@ -39,7 +42,7 @@ def _build_sweep(sources: str, cache: bool):
     return compiled
 
 
-_sweep = persistent(_build_sweep, lanes, taylor, events, motion, response, sweep)
+_sweep = persistent(_build_sweep, lanes, workspace, taylor, events, stops, motion, response, sweep)
 
 
 def simulate(
@@ -92,13 +95,32 @@ def _is_reducible(problem: Problem) -> bool:
     return not (run_out or problem.deviation or problem.stiffness_harmonics)
 
 
-@lru_cache
-def _stretches(contact_ratio: float, initial_phase: float, friction: bool):
-    """Return (length, double contact, gamma) of each stretch of a mesh period, from its start.
+class Stretch(NamedTuple):
+    """A stretch of the mesh period in which stiffness and friction do not change.
 
-    Lengths are in mesh periods; a period ends at every switch, and at the pitch point where
-    friction turns.
+    Attributes
+    ----------
+    length : float
+        In mesh periods.
+    double : bool
+        Whether two pairs of teeth are in contact.
+    gamma : float
+        Of eq. (6), over all pairs in contact.
     """
+
+    length: float
+    double: bool
+    gamma: float
+
+
+def _stretches_of(problem: Problem) -> list[Stretch]:
+    friction = problem.friction_coefficient != 0.0
+    return _stretches(problem.contact_ratio, problem.initial_phase, friction)
+
+
+@lru_cache
+def _stretches(contact_ratio: float, initial_phase: float, friction: bool) -> list[Stretch]:
+    """Cut a mesh period at every switch, and at the pitch point where friction turns."""
     places = [*switch_phases(contact_ratio), *([_PITCH_PHASE] if friction else [])]
     edges = [0.0, *sorted((place - initial_phase) % 1.0 for place in places), 1.0]
     stretches = []
@@ -106,27 +128,32 @@ def _stretches(contact_ratio: float, initial_phase: float, friction: bool):
         if end > start:
             middle = (0.5 * (start + end) + initial_phase) % 1.0
             double = bool(in_double_contact(middle, contact_ratio))
-            stretches.append((end - start, double, mesh_gamma(middle, contact_ratio)))
+            stretches.append(Stretch(end - start, double, mesh_gamma(middle, contact_ratio)))
     return stretches
 
 
-def _run(problem: Problem, tolerance: float) -> tuple:
+def _sample_ends(stretches: list[Stretch], per_period: int) -> list[int]:
+    """Return the number of the first sample behind each stretch; one at its end is behind it."""
+    edges = accumulate(stretch.length for stretch in stretches)
+    return [math.ceil(edge * per_period - _ON_EDGE) for edge in edges]
+
+
+def _run(problem: Problem, tolerance: float, samples_per_period: int) -> tuple:
     """Return `problem` in the form that the compiled sweep takes, a row of `sweep.RUN`."""
     friction = problem.friction_coefficient * math.tan(problem.pressure_angle)
-    period = 2.0 * math.pi / problem.nu
-    stretches = _stretches(problem.contact_ratio, problem.initial_phase, friction != 0.0)
+    period = problem.period
+    stretches = _stretches_of(problem)
     levels = {True: problem.stiffness_max, False: problem.stiffness_min}
-    rest = (0.0,) * (sweep.MAX_SEGMENTS - len(stretches))
+    rest = (0.0,) * (workspace.MAX_SEGMENTS - len(stretches))
     periods = problem.revolutions * problem.teeth
     frequency = math.sqrt(problem.bearing_stiffness / problem.body_mass)
     bearing = -2.0 / problem.bearing_stiffness
-    start = problem.initial_state or (1.0 - bearing, 0.0, bearing, 0.0)
     return (
         len(stretches),
-        tuple(length * period for length, _, _ in stretches) + rest,
-        tuple(levels[double] for _, double, _ in stretches) + rest,
-        tuple(friction * gamma for _, _, gamma in stretches) + rest,
-        tuple(-problem.friction_coefficient * gamma for _, _, gamma in stretches) + rest,
+        tuple(stretch.length * period for stretch in stretches) + rest,
+        tuple(levels[stretch.double] for stretch in stretches) + rest,
+        tuple(friction * stretch.gamma for stretch in stretches) + rest,
+        tuple(_sample_ends(stretches, samples_per_period)) + rest,
         period,
         periods,
         periods - problem.kept_revolutions * problem.teeth,
@@ -136,14 +163,14 @@ def _run(problem: Problem, tolerance: float) -> tuple:
         2.0 / problem.body_mass,
         frequency**2,
         2.0 * problem.bearing_damping_ratio * frequency,
-        start,
+        problem.initial_state or (1.0 - bearing, 0.0, bearing, 0.0),
         math.log2(tolerance),
     )
 
 
 def _simulate_reduced(problems, tolerance, samples_per_period, estimate_errors) -> list[Response]:
     n = len(problems)
-    rows = [_run(problem, tolerance) for problem in problems]
+    rows = [_run(problem, tolerance, samples_per_period) for problem in problems]
     # Companions follow the runs and leave nothing but their summaries.
     runs = np.array(rows + rows if estimate_errors else rows, sweep.RUN)
     runs["log_tolerance"][n:] = math.log2(tolerance * LOOSENING)
@@ -155,7 +182,7 @@ def _simulate_reduced(problems, tolerance, samples_per_period, estimate_errors) 
     extrema = np.empty((n, _EXTREMA_PER_PERIOD * kept), response.EXTREMUM)
     sampled = n if samples_per_period else 0
     row = kept * samples_per_period + lanes.WIDEST
-    samples = np.empty((sampled, sweep.N_SAMPLE_ROWS * row))
+    samples = np.empty((sampled, sweep.SAMPLED * row))
     _sweep(_workspace(), runs, summaries, strobes, extrema, samples, samples_per_period)
     return [
         assemble(
@@ -167,7 +194,7 @@ def _simulate_reduced(problems, tolerance, samples_per_period, estimate_errors) 
             problem.kept_revolutions * problem.teeth,
             tuple(summaries[i]["final"].tolist()),
             tolerance,
-            _samples(problem, samples[i], samples_per_period) if sampled else None,
+            _Samples(problem, samples[i], samples_per_period) if sampled else None,
         )
         for i, problem in enumerate(problems)
     ]
@@ -176,15 +203,56 @@ def _simulate_reduced(problems, tolerance, samples_per_period, estimate_errors) 
 def _workspace() -> np.ndarray:
     """Return the workspace of the sweep; a row that straddles two cache lines costs two loads."""
     row = 8 * lanes.WIDEST
-    raw = np.zeros((taylor.N_ROWS + 1) * lanes.WIDEST)
+    raw = np.zeros((workspace.N_ROWS + 1) * lanes.WIDEST)
     first = -raw.ctypes.data % row // 8
-    return raw[first : first + taylor.N_ROWS * lanes.WIDEST]
+    return raw[first : first + workspace.N_ROWS * lanes.WIDEST]
 
 
-def _samples(problem, rows, per_period) -> Samples:
-    n = problem.kept_revolutions * problem.teeth * per_period
-    courses = rows.reshape(sweep.N_SAMPLE_ROWS, -1)[:, :n]
-    first = (problem.revolutions - problem.kept_revolutions) * problem.teeth
-    period = 2.0 * math.pi / problem.nu
-    time = first * period + np.arange(n) * (period / per_period)
-    return Samples(time, *courses[:-1], regime=courses[-1].astype(np.int8))
+class _Samples:
+    """A time course like `response.Samples`; all but y, v and a is computed when asked for."""
+
+    def __init__(self, problem: Problem, rows: np.ndarray, per_period: int):
+        self._problem = problem
+        self._per_period = per_period
+        self._kept = problem.kept_revolutions * problem.teeth
+        self.y, self.v, self.a = rows.reshape(sweep.SAMPLED, -1)[:, : self._kept * per_period]
+
+    @cached_property
+    def time(self) -> np.ndarray:
+        first = (self._problem.revolutions - self._problem.kept_revolutions) * self._problem.teeth
+        spacing = self._problem.period / self._per_period
+        return first * self._problem.period + np.arange(self.y.size) * spacing
+
+    @cached_property
+    def regime(self) -> np.ndarray:
+        problem = self._problem
+        flank = np.where(self.y <= -problem.backlash, motion.INVERSE_MESH, motion.CONTACT_LOSS)
+        return np.where(self.y >= 0.0, motion.NORMAL_MESH, flank).astype(np.int8)
+
+    @cached_property
+    def stiffness(self) -> np.ndarray:
+        problem = self._problem
+        return self._of_stretches(
+            lambda stretch: problem.stiffness_max if stretch.double else problem.stiffness_min
+        )
+
+    @cached_property
+    def modified_stiffness(self) -> np.ndarray:
+        return self.stiffness * (self.regime != motion.CONTACT_LOSS)
+
+    @cached_property
+    def force_dynamic(self) -> np.ndarray:
+        return motion.dynamic_force(self.y, self.stiffness)
+
+    @cached_property
+    def force_friction(self) -> np.ndarray:
+        problem = self._problem
+        depth = self.y + problem.backlash * (self.regime == motion.INVERSE_MESH)
+        gamma = self._of_stretches(lambda stretch: stretch.gamma)
+        return -problem.friction_coefficient * gamma * self.modified_stiffness * depth
+
+    def _of_stretches(self, value: Callable[[Stretch], float]) -> np.ndarray:
+        """Return what belongs to the stretches of a mesh period, for every sample."""
+        stretches = _stretches_of(self._problem)
+        counts = np.diff(_sample_ends(stretches, self._per_period), prepend=0)
+        return np.tile(np.repeat([value(stretch) for stretch in stretches], counts), self._kept)

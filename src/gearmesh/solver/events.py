@@ -5,8 +5,8 @@ function for its first change of sign:
 
 - y itself, measured from the level where the flanks part, while they touch, turning points do not
   count (before the kept revolutions) and do not bend the damping (no |v| v);
-- v otherwise. Up to the first turning point y is monotone, so it crosses a level at most once and
-  its end tells whether it does.
+- v otherwise. Up to the first turning point y is monotone, so it passes a level at most once, and
+  a look at y tells whether it has.
 
 Either way an orbit that dips through y = 0 and returns within a step (grazing) is seen. What is
 watched is sampled at `N_SAMPLES` places; between two of them a pair of changes of sign can hide
@@ -16,152 +16,188 @@ below 0 it is computed.
 
 from numba import njit
 
-from gearmesh.solver.lanes import any_lane, fma, load, magnitude, select, spread
-from gearmesh.solver.taylor import (
+from gearmesh.solver.lanes import any_lane, fma, load, magnitude, select, spread, store
+from gearmesh.solver.taylor import REST, evaluate_with_bend, evaluate_with_twist
+from gearmesh.solver.workspace import (
+    EVENT,
+    GUARD,
+    LEVEL_ABOVE,
+    LEVEL_BELOW,
+    OFFSET,
     ORDER,
-    REST,
+    REMAINING,
     SIGN,
     STEP,
-    WATCHED,
+    TAKEN,
     Y,
-    evaluate,
-    evaluate_with_bend,
-    evaluate_with_slope,
 )
 
-N_SAMPLES = 8
-# A step of Halley's method this small leaves an error of its cube.
-_CONVERGED = 1e-7
+PASSED, TURNED, CROSSED, STOPPED = 0.0, 1.0, 2.0, 3.0
+"""What ends a step: nothing but its length, a turning point, a level, a stop."""
+
+N_SAMPLES = 4
+_SETTLED = 1e-14
 # Far enough for the value at the minimum, which is flat there.
 _DIP_PLACE = 1e-7
 _MOST_ITERATIONS = 60
 
 
 @njit(inline="always")
-def _halley(at, value, slope, bend):
-    """Return the next place of Halley's method, and whether it is the last; `bend` is f''/2.
-
-    Newton's step decides: beside a double root Halley's is small far from any root.
-    """
-    newton = value / slope
-    settled = magnitude(newton) <= spread(at, _CONVERGED)
-    return at - newton / (1.0 - newton * bend / slope), settled
-
-
-@njit(inline="always")
-def _dip(like, work, sign, suspect, low, high):
+def _dip(like, work, guards, side, floor, suspect, low, high):
     """Return the minimum of what is watched between `low` and `high`, and its place."""
     zero = spread(like, 0.0)
     at = 0.5 * (low + high)
     active = suspect
+    value = zero
     for _ in range(_MOST_ITERATIONS):
-        _, slope, bend = evaluate_with_bend(like, work, WATCHED, ORDER + 1, at)
-        falling = sign * slope < zero
+        y, v, half_a, twist = evaluate_with_twist(like, work, Y, ORDER + 1, at)
+        value = side * select(guards, y - floor, v)
+        slope = select(guards, v, 2.0 * half_a)
+        bend = select(guards, 2.0 * half_a, 6.0 * twist)
+        falling = side * slope < zero
         low = select(falling, at, low)
         high = select(falling, high, at)
-        following = at - slope / (2.0 * bend)
+        following = at - slope / bend
         inside = (following > low) & (following < high)
         following = select(inside, following, 0.5 * (low + high))
-        settled = magnitude(following - at) <= spread(like, _DIP_PLACE)
+        active = active & ~(magnitude(following - at) <= spread(like, _DIP_PLACE))
         at = select(active, following, at)
-        active = active & ~settled
         if not any_lane(active):
             break
-    value = evaluate(like, work, WATCHED, ORDER + 1, at)
-    return sign * value, at
+    return value, at
 
 
 @njit(inline="never")
-def bracket(like, work, sign):
-    """Return whether sign times what is watched falls through 0, a bracket of where, a guess."""
+def bracket(like, work, guards, side, floor, level):
+    """Find the first stretch of the step in which what is watched falls, or `level` is passed.
+
+    Returns
+    -------
+    found, passed : mask
+        Whether what is watched falls through 0; whether y, still on its way, passes the level.
+    low, high : lanes
+        The ends of the stretch.
+    guess : lanes
+        Where the secant puts the root.
+    """
     zero = spread(like, 0.0)
-    step = load(like, work, STEP)
-    low = zero
-    high = step
-    # Values at both ends of the bracket, for the first guess.
-    low_value = zero
-    high_value = zero
-    found = zero > zero
-    before = sign * load(like, work, WATCHED)
-    slope_before = sign * load(like, work, WATCHED + 1)
-    place_before = zero
     rest = spread(like, REST)
+    step = load(like, work, STEP)
+    sign = load(like, work, SIGN)
+    low = place_before = low_value = high_value = zero
+    high = step
+    found = passed = zero > zero
+    y, v = load(like, work, Y), load(like, work, Y + 1)
+    before = side * select(guards, y - floor, v)
+    slope_before = side * select(guards, v, 2.0 * load(like, work, Y + 2))
+    room_before = sign * (level - y)
     width = step * (1.0 / N_SAMPLES)
     for j in range(1, N_SAMPLES + 1):
         place = width * float(j)
-        value, slope = evaluate_with_slope(like, work, WATCHED, ORDER + 1, place)
-        value = sign * value
-        slope = sign * slope
-        dips = (slope_before < zero) & (slope > zero) & (value >= zero) & ~found
+        y, v, half_a = evaluate_with_bend(like, work, Y, ORDER + 1, place)
+        value = side * select(guards, y - floor, v)
+        slope = side * select(guards, v, 2.0 * half_a)
+        room = sign * (level - y)
+        ahead = ~(found | passed)
+        dips = (slope_before < zero) & (slope > zero) & (value >= zero) & ahead
         if any_lane(dips):
             # Where the tangents of both ends meet: below the minimum of a convex course.
             where = (value - before - slope * width) / (slope_before - slope)
             suspect = dips & (fma(slope_before, where, before) <= zero)
             if any_lane(suspect):
-                lowest, at = _dip(like, work, sign, suspect, place_before, place)
+                lowest, at = _dip(like, work, guards, side, floor, suspect, place_before, place)
                 suspect = suspect & (lowest < -rest)
                 low = select(suspect, place_before, low)
                 high = select(suspect, at, high)
                 low_value = select(suspect, before, low_value)
                 high_value = select(suspect, lowest, high_value)
                 found = found | suspect
-        falls = (value < -rest) & ~found
-        low = select(falls, place_before, low)
-        high = select(falls, place, high)
-        low_value = select(falls, before, low_value)
-        high_value = select(falls, value, high_value)
+                ahead = ahead & ~suspect
+        falls = (value < -rest) & ahead
+        passes = (room < zero) & ahead & ~falls & ~guards
         found = found | falls
+        passed = passed | passes
+        ends = falls | passes
+        low = select(ends, place_before, low)
+        high = select(ends, place, high)
+        low_value = select(ends, select(passes, room_before, before), low_value)
+        high_value = select(ends, select(passes, room, value), high_value)
         before = value
         slope_before = slope
+        room_before = room
         place_before = place
     guess = low + (high - low) * (low_value / (low_value - high_value))
     # A step that begins at an event must not find that event again.
     guess = select(low_value <= rest, high, guess)
-    return found, low, high, guess
+    return found, passed, low, high, guess
 
 
 @njit(inline="never")
-def fall(like, work, sign, wanted, low, high, at):
-    """Return where what is watched passes 0 between `low` and `high`: Halley's method from `at`."""
+def locate(like, work, wanted, turns, side, level, low, high, at):
+    """Return where v, or where `turns` is not set y - `level`, passes 0, and y there.
+
+    Halley's method from `at`, inside the bracket; side times the function falls. Newton's step
+    decides where it ends: beside a double root Halley's is small far from any root.
+    """
     zero = spread(like, 0.0)
     active = wanted
+    y_there = zero
     for _ in range(_MOST_ITERATIONS):
-        value, slope, bend = evaluate_with_bend(like, work, WATCHED, ORDER + 1, at)
-        forward = sign * value > zero
-        low = select(active & forward, at, low)
-        high = select(active & ~forward, at, high)
-        following, settled = _halley(at, value, slope, bend)
+        y, v, half_a, twist = evaluate_with_twist(like, work, Y, ORDER + 1, at)
+        value = select(turns, v, y - level)
+        slope = select(turns, 2.0 * half_a, v)
+        bend = select(turns, 3.0 * twist, half_a)
+        ahead = side * value > zero
+        low = select(active & ahead, at, low)
+        high = select(active & ~ahead, at, high)
+        newton = value / slope
+        curved = newton * bend / slope
+        following = at - newton / (1.0 - curved)
+        # The error that Halley's step leaves, in curvature and in the term after it.
+        left = magnitude(newton) * fma(curved, curved, newton * newton)
+        settled = left <= spread(like, _SETTLED)
         inside = (following > low) & (following < high)
         following = select(inside | settled, following, 0.5 * (low + high))
+        moved = following - at
+        y = fma(fma(fma(twist, moved, half_a), moved, v), moved, y)
+        y_there = select(active, y, y_there)
         at = select(active, following, at)
         active = active & ~settled
         if not any_lane(active):
             break
-    return at
+    return at, y_there
 
 
 @njit(inline="never")
-def crossing(like, work, level, wanted, end):
-    """Return where y, monotone up to `end`, passes `level`: Halley's method, bracketed."""
+def find_event(like, work):
+    """Write how far the step goes, up to its first event, and what that event is."""
+    zero = spread(like, 0.0)
+    step = load(like, work, STEP)
     sign = load(like, work, SIGN)
-    zero = spread(like, 0.0)
-    low = zero
-    high = end
-    start = load(like, work, Y)
-    last = evaluate(like, work, Y, ORDER + 1, end)
-    at = end * ((level - start) / (last - start))
-    at = select((at > low) & (at < high), at, 0.5 * end)
-    active = wanted
-    for _ in range(_MOST_ITERATIONS):
-        value, slope, bend = evaluate_with_bend(like, work, Y, ORDER + 1, at)
-        short = sign * (value - level) < zero
-        low = select(active & short, at, low)
-        high = select(active & ~short, at, high)
-        following, settled = _halley(at, value - level, slope, bend)
-        inside = (following > low) & (following < high)
-        following = select(inside | settled, following, 0.5 * (low + high))
-        at = select(active, following, at)
-        active = active & ~settled
-        if not any_lane(active):
-            break
-    return at
+    guard = load(like, work, GUARD)
+    floor = load(like, work, OFFSET)
+    guards = ~(guard == zero)
+    side = select(guards, guard, sign)
+    level = select(sign > zero, load(like, work, LEVEL_ABOVE), load(like, work, LEVEL_BELOW))
+    found, passed, low, high, guess = bracket(like, work, guards, side, floor, level)
+    stopped = step >= load(like, work, REMAINING)
+    event = select(stopped, spread(like, STOPPED), spread(like, PASSED))
+    end = step
+    if any_lane(found | passed):
+        turned = found & ~guards
+        crossed = (found & guards) | passed
+        side = select(passed, -sign, side)
+        limit = select(guards, floor, level)
+        at, y = locate(like, work, found | passed, turned, side, limit, low, high, guess)
+        end = select(found | passed, at, step)
+        event = select(turned, spread(like, TURNED), event)
+        # A turning point may lie beyond the level, which was then passed before it.
+        beyond = turned & (sign * (level - y) < zero)
+        if any_lane(beyond):
+            middle = 0.5 * (low + end)
+            at, y = locate(like, work, beyond, zero > zero, -sign, level, low, end, middle)
+            end = select(beyond, at, end)
+            crossed = crossed | beyond
+        event = select(crossed, spread(like, CROSSED), event)
+    store(work, TAKEN, end)
+    store(work, EVENT, event)

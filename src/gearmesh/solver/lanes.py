@@ -335,12 +335,6 @@ class _Traced:
     def __neg__(self):
         return _Traced(self.builder, self.builder.fneg(self.value))
 
-    def choose(self, one, other):
-        """Return `one` where self is not 0, else `other`."""
-        mask = self.builder.fcmp_unordered("!=", self.value, self._operand(0.0))
-        chosen = self.builder.select(mask, self._operand(one), self._operand(other))
-        return _Traced(self.builder, chosen)
-
     def times_plus(self, factor, summand):
         """Return self factor + summand with one rounding."""
         operands = (self.value, self._operand(factor), self._operand(summand))
@@ -386,9 +380,13 @@ def unrolled(function):
     return compiled
 
 
+COARSENESS = 0.0861
+"""Most by which `coarse_log2` is too small, and `coarse_exp2` too large in its exponent."""
+
+
 @intrinsic
 def coarse_log2(typingctx, a):
-    """Return log2 of the positive `a`, too small by at most 0.087 (exponent plus mantissa)."""
+    """Return log2 of the positive `a` (exponent plus mantissa), at most `COARSENESS` too small."""
 
     def codegen(context, builder, sig, args):
         width = a.width

@@ -11,14 +11,12 @@ gamma is the friction's share of the elastic force (`gearmesh.friction`), mu = m
 w^2 = mu c_b/C_s. Between two events c, y_0, the k_i and the sign of v are constants, so the
 solution is analytic and its Taylor coefficients follow from a recurrence with at most two Cauchy
 products (Jorba and Zou, Experimental Mathematics 14, 2005).
-
-The workspace is one flat float64 array of rows, one element of a row for each lane; the names
-below are row numbers.
 """
 
 from numba import njit
 
 from gearmesh.solver.lanes import (
+    COARSENESS,
     coarse_exp2,
     coarse_log2,
     fma,
@@ -29,52 +27,26 @@ from gearmesh.solver.lanes import (
     store,
     unrolled,
 )
-
-ORDER = 16
-"""Degree of the Taylor polynomials."""
-
-_SPAN = ORDER + 1
-U, B, Y, V, WATCHED = (_SPAN * i for i in range(5))
-"""First rows of the series of u, b, y, v and of what is watched for events; the state is U, U + 1,
-B, B + 1."""
-
-_FIRST = 5 * _SPAN
-(
-    ELASTIC,  # c, 0 in contact loss
-    OFFSET,  # y_0
-    LINEAR,  # k_1
-    QUADRATIC,  # k_2
-    CUBIC,  # k_3
-    FRICTION,  # g
-    LOAD,  # 1; 0 in an idle lane
-    TWO_MU,  # 2 m_red/m
-    BEARING_STIFFNESS,  # w^2
-    BEARING_DAMPING,  # 2 zeta w
-    LEVEL_ABOVE,  # level that a rising y crosses into the next regime
-    LEVEL_BELOW,  # level that a falling y crosses
-    GUARD,  # 1 or -1: watch y, which must stay above or below GUARDED; 0: watch v
-    GUARDED,  # level that ends the contact
-    REMAINING,  # time to the next switch, pitch point or boundary
-    LONGEST,  # bound of a step
-    LOG_TOLERANCE,  # log2 of the local error tolerance
-    SIGN,  # direction of motion, sign of v
-    STEP,  # length of the expansion
-    TAKEN,  # what is taken of it, up to the first event
-    EVENT,  # what ends the step, see `gearmesh.integrator`
-    SINCE_STOP,  # time since the stretch of constant stiffness began
-    LENGTH,  # of that stretch
-    SINCE_BOUNDARY,  # time since the mesh period began
-    KEPT,  # 1 in the kept revolutions, else 0
-    LOST,  # 1 in contact loss, else 0
-    SQUARE_INTEGRAL,  # of y^2 over the kept time
-    LOSS_TIME,  # kept time in contact loss
-    INVERSE,  # 1 in inverse mesh, else 0
-    INVERSE_TIME,  # kept time in inverse mesh
-    STEPS,  # steps taken
-    MOST_STEPS,  # steps after which the run is given up
-    SCRATCH,  # three rows
-) = range(_FIRST, _FIRST + 33)
-N_ROWS = SCRATCH + 3
+from gearmesh.solver.workspace import (
+    BEARING_DAMPING,
+    BEARING_STIFFNESS,
+    CUBIC,
+    ELASTIC,
+    FRICTION,
+    LINEAR,
+    LOAD,
+    LOG_TOLERANCE,
+    LONGEST,
+    OFFSET,
+    ORDER,
+    QUADRATIC,
+    REMAINING,
+    SIGN,
+    STEP,
+    TWO_MU,
+    B,
+    Y,
+)
 
 REST = 1e-14
 """Velocities and accelerations below this are rounding errors of a body at rest."""
@@ -90,9 +62,8 @@ within its convergence: such a mode would grow from rounding errors unseen by th
 @njit(inline="never")
 def direction(like, work):
     """Return the sign of v, where v rests that of the acceleration, where both rest the last."""
-    y = load(like, work, U) + load(like, work, B)
-    v = load(like, work, U + 1) + load(like, work, B + 1)
-    elastic = load(like, work, ELASTIC) * (y - load(like, work, OFFSET))
+    v = load(like, work, Y + 1)
+    elastic = load(like, work, ELASTIC) * (load(like, work, Y) - load(like, work, OFFSET))
     push = load(like, work, LOAD) - elastic + load(like, work, FRICTION) * elastic
     bearing = load(like, work, TWO_MU) * elastic
     bearing = fma(load(like, work, BEARING_STIFFNESS), load(like, work, B), bearing)
@@ -108,61 +79,104 @@ def direction(like, work):
     return select(magnitude(leading) <= rest, before, now)
 
 
-def _product(left, right, k):
-    """Return the k-th coefficient of a product of series, the newest coefficients last."""
+def _inner_product(left, right, k):
+    """Return the k-th coefficient of a product of series less its two outermost terms.
+
+    The newest coefficients come last: only they make the sum wait.
+    """
     total = None
-    for i in range(k // 2, -1, -1):
-        for a, b in {(i, k - i), (k - i, i)}:
-            total = left[a] * right[b] if total is None else left[a].times_plus(right[b], total)
+    for i in sorted(range(1, k), key=lambda i: abs(2 * i - k)):
+        a, b = left[i], right[k - i]
+        total = a * b if total is None else a.times_plus(b, total)
     return total
 
 
-def _square(series, k):
-    """Return the k-th coefficient of the square of a series, the newest coefficients last."""
-    total = None
-    for i in range((k - 1) // 2, -1, -1):
-        term = series[i], series[k - i]
-        total = term[0] * term[1] if total is None else term[0].times_plus(term[1], total)
-    if k % 2 == 1:
-        return total * 2.0
-    middle = series[k // 2] * series[k // 2]
-    return middle if total is None else total.times_plus(2.0, middle)
+def _inner_half_square(series, k):
+    """Return half of what `_inner_product` gives for the square of a series."""
+    total = series[k // 2] * series[k // 2] * 0.5 if k % 2 == 0 else None
+    for i in range((k - 1) // 2, 0, -1):
+        a, b = series[i], series[k - i]
+        total = a * b if total is None else a.times_plus(b, total)
+    return total
+
+
+class _Damping:
+    """The damping force as a series, k_1 v + 2 k_2 h + 2 k_3 h v with h = v^2/2.
+
+    Its coefficient of degree k depends on v_k by `slope`, the slope of the law at the start, and
+    otherwise on what is known before v_k: `inner`.
+    """
+
+    def __init__(self, rows, powers):
+        self.powers = powers
+        self.v = [rows[Y + 1]]
+        self.half_square = [self.v[0] * self.v[0] * 0.5]
+        self.slope = rows[LINEAR]
+        if powers > 1:
+            self.of_square = rows[QUADRATIC] * rows[SIGN] * 2.0
+            self.slope = self.of_square.times_plus(self.v[0], self.slope)
+        if powers > 2:
+            self.of_cube = rows[CUBIC] * 2.0
+            self.slope = self.of_cube.times_plus(self.half_square[0] * 3.0, self.slope)
+            self.of_square = self.of_cube.times_plus(self.v[0], self.of_square)
+
+    def inner(self, k):
+        """Return the coefficient of degree k of the force less slope v_k; None if that is 0."""
+        if self.powers == 1:
+            return None
+        if k == 0:
+            bend = self.of_square
+            if self.powers > 2:
+                bend = self.of_cube.times_plus(self.v[0], bend)
+            return -(bend * self.half_square[0])
+        inner = _inner_half_square(self.v, k)
+        outer = self.v[0] * self.v[k]
+        self.half_square.append(outer if inner is None else outer + inner)
+        if inner is None:
+            return None
+        force = self.of_square * inner
+        if self.powers > 2:
+            force = self.of_cube.times_plus(_inner_product(self.half_square, self.v, k), force)
+        return force
 
 
 def _expand(rows, powers):
-    """Write the series from the state, with damping of the given powers."""
-    y, v, square = [rows[U] + rows[B]], [rows[U + 1] + rows[B + 1]], []
-    b = [rows[B], rows[B + 1]]
-    y.append(v[0])
-    rate = {1: rows[LINEAR], 2: rows[QUADRATIC] * rows[SIGN], 3: rows[CUBIC]}
-    # y'' = u'' + b'' in one line of sums keeps the chain from v_k to v_k+1 short.
-    share = -(rows[TWO_MU] + 1.0)
-    elastic_share = rows[FRICTION] + share
-    for k in range(ORDER - 1):
-        elastic = rows[ELASTIC] * (y[0] - rows[OFFSET] if k == 0 else y[k])
-        bearing = rows[BEARING_STIFFNESS] * b[k]
-        bearing = (rows[BEARING_DAMPING] * (k + 1.0)).times_plus(b[k + 1], bearing)
-        known = elastic.times_plus(elastic_share, -bearing)
+    """Write the series from the state, with damping of the given powers.
+
+    The two newest coefficients, v_k and b'_k, enter those of the next degree by one multiply-add
+    each: the processor works on all the rest while it waits for these.
+    """
+    damping = _Damping(rows, powers)
+    y, v, b, rate = [rows[Y]], damping.v, [rows[B]], [rows[B + 1]]  # rate is b'
+    recoil = -rows[TWO_MU]
+    share = recoil - 1.0
+    stiffness, support = (rows[FRICTION] + share) * rows[ELASTIC], -rows[BEARING_STIFFNESS]
+    recoil_stiffness = recoil * rows[ELASTIC]
+    damped, recoil_damped = share * damping.slope, recoil * damping.slope
+    for k in range(ORDER):
+        part = 1.0 / (k + 1.0)
+        y.append(v[k] * part)
+        b.append(rate[k] * part)
+        if k == ORDER - 1:
+            break
+        bearing = support * b[k]
+        height = y[0] - rows[OFFSET] if k == 0 else y[k]
+        v_known = stiffness.times_plus(height, bearing)
+        rate_known = recoil_stiffness.times_plus(height, bearing)
         if k == 0:
-            known = known + rows[LOAD]
-        damping = rate[1] * v[k]
-        if powers > 1:
-            square.append(_square(v, k))
-            damping = rate[2].times_plus(square[k], damping)
-        if powers > 2:
-            damping = rate[3].times_plus(_product(square, v, k), damping)
-        acceleration = share.times_plus(damping, known)
-        v.append(acceleration * (1.0 / (k + 1.0)))
-        y.append(acceleration * (1.0 / ((k + 1.0) * (k + 2.0))))
-        recoil = rows[TWO_MU].times_plus(elastic + damping, bearing)
-        b.append(recoil * (-1.0 / ((k + 1.0) * (k + 2.0))))
+            v_known = v_known + rows[LOAD]
+        inner = damping.inner(k)
+        if inner is not None:
+            v_known = share.times_plus(inner, v_known)
+            rate_known = recoil.times_plus(inner, rate_known)
+        bearing_damped = rows[BEARING_DAMPING] * -part
+        v_known = bearing_damped.times_plus(rate[k], v_known * part)
+        rate_known = (recoil_damped * part).times_plus(v[k], rate_known * part)
+        v.append((damped * part).times_plus(v[k], v_known))
+        rate.append(bearing_damped.times_plus(rate[k], rate_known))
     for k in range(ORDER + 1):
         rows[Y + k] = y[k]
         rows[B + k] = b[k]
-        rows[U + k] = y[k] - b[k]
-    for k in range(ORDER + 1):
-        height = y[k] - rows[GUARDED] if k == 0 else y[k]
-        rows[WATCHED + k] = rows[GUARD].choose(height, v[k] if k < ORDER else 0.0)
 
 
 _expand_linear = unrolled(lambda rows: _expand(rows, 1))
@@ -172,7 +186,7 @@ _expand_cubic = unrolled(lambda rows: _expand(rows, 3))
 
 @njit(inline="never")
 def expand(like, work, powers):
-    """Fill the series from the state; `powers` of v that act in some lane."""
+    """Fill the series from the state; `powers` is the highest power of v in any lane's damping."""
     if powers == 1:
         _expand_linear(like, work)
     elif powers == 2:
@@ -183,18 +197,22 @@ def expand(like, work, powers):
 
 @njit(inline="never")
 def choose_step(like, work):
-    """Write the step for which the last terms stay below the tolerance, to the next stop."""
-    log_tolerance = load(like, work, LOG_TOLERANCE)
+    """Write the step at which the first terms left out reach the tolerance, to the next stop.
+
+    Each of the last terms of v and b' tells a radius of convergence, for motion of the size of
+    y_st (Jorba and Zou). The step leaves the term of degree ORDER, the first that v lacks, at the
+    tolerance.
+    """
+    room = load(like, work, LOG_TOLERANCE) * (1.0 / ORDER) - COARSENESS
     tiny = spread(like, 1e-290)
     longest = load(like, work, LONGEST)
     step = load(like, work, REMAINING)
     step = select(longest < step, longest, step)
     # Three terms: from a turning point on, cubic damping leaves every third one only.
-    for back in range(3):
-        degree = ORDER - back
-        size = magnitude(load(like, work, Y + degree)) + magnitude(load(like, work, U + degree))
-        room = (log_tolerance - coarse_log2(size + tiny)) * (1.0 / degree)
-        bound = coarse_exp2(room)
+    for k in range(ORDER - 3, ORDER):
+        size = magnitude(load(like, work, Y + k + 1)) + magnitude(load(like, work, B + k + 1))
+        radius = coarse_log2(size * (k + 1.0) + tiny) * (-1.0 / k)
+        bound = coarse_exp2(room + radius)
         step = select(bound < step, bound, step)
     store(work, STEP, step)
 
@@ -230,3 +248,18 @@ def evaluate_with_bend(like, work, series, n, s):
         slope = fma(slope, s, value)
         value = fma(value, s, load(like, work, series + k))
     return value, slope, bend
+
+
+@njit(inline="always")
+def evaluate_with_twist(like, work, series, n, s):
+    """Return what `evaluate_with_bend` does, and a sixth of the third derivative at `s`."""
+    value = load(like, work, series + n - 1)
+    slope = spread(like, 0.0)
+    bend = slope
+    twist = slope
+    for k in range(n - 2, -1, -1):
+        twist = fma(twist, s, bend)
+        bend = fma(bend, s, slope)
+        slope = fma(slope, s, value)
+        value = fma(value, s, load(like, work, series + k))
+    return value, slope, bend, twist
