@@ -9,7 +9,7 @@ function for its first change of sign:
   a look at y tells whether it has.
 
 Either way an orbit that dips through y = 0 and returns within a step (grazing) is seen. What is
-watched is sampled at `N_SAMPLES` places; between two of them a pair of changes of sign can hide
+watched is looked at in `N_PLACES` places; between two of them a pair of changes of sign can hide
 only where it has a minimum. The two tangents bound that minimum from below, and where they meet
 below 0 it is computed.
 """
@@ -17,15 +17,19 @@ below 0 it is computed.
 from numba import njit
 
 from gearmesh.solver.lanes import any_lane, fma, load, magnitude, select, spread, store
-from gearmesh.solver.taylor import REST, evaluate_with_bend, evaluate_with_twist
+from gearmesh.solver.taylor import REST, evaluate_with_twist, look
 from gearmesh.solver.workspace import (
     EVENT,
     GUARD,
     LEVEL_ABOVE,
     LEVEL_BELOW,
+    N_PLACES,
     OFFSET,
     ORDER,
     REMAINING,
+    SEEN_HALF_A,
+    SEEN_V,
+    SEEN_Y,
     SIGN,
     STEP,
     TAKEN,
@@ -35,7 +39,6 @@ from gearmesh.solver.workspace import (
 PASSED, TURNED, CROSSED, STOPPED = 0.0, 1.0, 2.0, 3.0
 """What ends a step: nothing but its length, a turning point, a level, a stop."""
 
-N_SAMPLES = 4
 _SETTLED = 1e-14
 # Far enough for the value at the minimum, which is flat there.
 _DIP_PLACE = 1e-7
@@ -82,50 +85,50 @@ def bracket(like, work, guards, side, floor, level):
     """
     zero = spread(like, 0.0)
     rest = spread(like, REST)
-    step = load(like, work, STEP)
     sign = load(like, work, SIGN)
-    low = place_before = low_value = high_value = zero
-    high = step
+    width = load(like, work, STEP) * (1.0 / N_PLACES)
+    low = low_value = high_value = zero
+    high = load(like, work, STEP)
     found = passed = zero > zero
     y, v = load(like, work, Y), load(like, work, Y + 1)
     before = side * select(guards, y - floor, v)
     slope_before = side * select(guards, v, 2.0 * load(like, work, Y + 2))
     room_before = sign * (level - y)
-    width = step * (1.0 / N_SAMPLES)
-    for j in range(1, N_SAMPLES + 1):
-        place = width * float(j)
-        y, v, half_a = evaluate_with_bend(like, work, Y, ORDER + 1, place)
+    look(like, work)
+    for j in range(N_PLACES):
+        y, v = load(like, work, SEEN_Y + j), load(like, work, SEEN_V + j)
         value = side * select(guards, y - floor, v)
-        slope = side * select(guards, v, 2.0 * half_a)
+        slope = side * select(guards, v, 2.0 * load(like, work, SEEN_HALF_A + j))
         room = sign * (level - y)
         ahead = ~(found | passed)
+        falls = (value < -rest) & ahead
+        passes = (room < zero) & ahead & ~falls & ~guards
         dips = (slope_before < zero) & (slope > zero) & (value >= zero) & ahead
         if any_lane(dips):
             # Where the tangents of both ends meet: below the minimum of a convex course.
             where = (value - before - slope * width) / (slope_before - slope)
             suspect = dips & (fma(slope_before, where, before) <= zero)
             if any_lane(suspect):
-                lowest, at = _dip(like, work, guards, side, floor, suspect, place_before, place)
+                start, end = width * float(j), width * float(j + 1)
+                lowest, at = _dip(like, work, guards, side, floor, suspect, start, end)
                 suspect = suspect & (lowest < -rest)
-                low = select(suspect, place_before, low)
+                low = select(suspect, start, low)
                 high = select(suspect, at, high)
                 low_value = select(suspect, before, low_value)
                 high_value = select(suspect, lowest, high_value)
                 found = found | suspect
-                ahead = ahead & ~suspect
-        falls = (value < -rest) & ahead
-        passes = (room < zero) & ahead & ~falls & ~guards
-        found = found | falls
-        passed = passed | passes
+                passes = passes & ~suspect
         ends = falls | passes
-        low = select(ends, place_before, low)
-        high = select(ends, place, high)
-        low_value = select(ends, select(passes, room_before, before), low_value)
-        high_value = select(ends, select(passes, room, value), high_value)
+        if any_lane(ends):
+            found = found | falls
+            passed = passed | passes
+            low = select(ends, width * float(j), low)
+            high = select(ends, width * float(j + 1), high)
+            low_value = select(ends, select(passes, room_before, before), low_value)
+            high_value = select(ends, select(passes, room, value), high_value)
         before = value
         slope_before = slope
         room_before = room
-        place_before = place
     guess = low + (high - low) * (low_value / (low_value - high_value))
     # A step that begins at an event must not find that event again.
     guess = select(low_value <= rest, high, guess)

@@ -90,14 +90,14 @@ SAMPLED = 3
 
 RUN = np.dtype(
     [
-        ("segments", np.int64),
+        ("segments", np.float64),
         ("length", np.float64, MAX_SEGMENTS),
         ("stiffness", np.float64, MAX_SEGMENTS),
         ("friction", np.float64, MAX_SEGMENTS),
-        ("sample_end", np.int64, MAX_SEGMENTS),
+        ("sample_end", np.float64, MAX_SEGMENTS),
         ("period", np.float64),
-        ("periods", np.int64),
-        ("first_kept", np.int64),
+        ("periods", np.float64),
+        ("first_kept", np.float64),
         ("material", np.float64, 3),
         ("lubricant", np.float64, 3),
         ("backlash", np.float64),
@@ -108,7 +108,7 @@ RUN = np.dtype(
         ("log_tolerance", np.float64),
     ]
 )
-"""One run as the kernel takes it, times in tau_s.
+"""One run as the kernel takes it, times in tau_s; whole numbers too are kept as floating ones.
 
 For each stretch of constant stiffness and friction sign in a mesh period: its length, C/C_s, the
 share of the elastic force that friction adds to u'', and the number of the first sample of the
@@ -175,7 +175,7 @@ def _begin(work, width, lane, runs, summaries, strobes, index):
         _set(work, width, MATERIAL + power, lane, run.material[power])
         _set(work, width, LUBRICANT + power, lane, run.lubricant[power])
     stiffest = 0.0
-    for i in range(run.segments):
+    for i in range(int(run.segments)):
         stiffest = max(stiffest, run.stiffness[i])
         _set(work, width, SEGMENT_LENGTH + i, lane, run.length[i])
         _set(work, width, SEGMENT_STIFFNESS + i, lane, run.stiffness[i])
@@ -355,15 +355,14 @@ def _sample(work, width, lane, run, samples, per_period):
     since_stop = _get(work, width, SINCE_STOP, lane)
     taken = _get(work, width, TAKEN, lane)
     # Which samples belong to a stretch is a matter of counting, not of rounding.
-    last = run.sample_end[segment]
+    last = int(run.sample_end[segment])
     if since_stop > 0.0:
         first = int(np.ceil(since_boundary / spacing))
     else:
-        first = run.sample_end[segment - 1] if segment > 0 else 0
+        first = int(run.sample_end[segment - 1]) if segment > 0 else 0
     if _get(work, width, EVENT, lane) != STOPPED and _get(work, width, REMAINING, lane) > taken:
         last = min(last, int(np.ceil((since_boundary + taken) / spacing)))
-    row = samples.size // SAMPLED
-    begin = (period - run.first_kept) * per_period
+    begin = (period - int(run.first_kept)) * per_period
     zero = spread(like, 0.0)
     # A chunk may write beyond `last`: the next step writes there again, rows have spare room.
     for i in range(first, last, width_of(like)):
@@ -373,9 +372,9 @@ def _sample(work, width, lane, run, samples, per_period):
             half_a = fma(half_a, time, v)
             v = fma(v, time, y)
             y = fma(y, time, spread(like, _get(work, width, Y + k, lane)))
-        store_at(samples, begin + i, y)
-        store_at(samples, begin + i + row, v)
-        store_at(samples, begin + i + 2 * row, half_a * 2.0)
+        store_at(samples[0], begin + i, y)
+        store_at(samples[1], begin + i, v)
+        store_at(samples[2], begin + i, half_a * 2.0)
 
 
 @njit
@@ -384,7 +383,7 @@ def sweep(like, work, runs, summaries, strobes, extrema, samples, samples_per_pe
 
     `work` has N_ROWS rows of as many elements as there are lanes, best aligned to one row.
     `summaries` has one row for each run. `strobes` of shape (l, periods + 1, 2), `extrema` of shape
-    (m, capacity) and `samples` of shape (n, SAMPLED * row) serve the first l, m and n runs; a row
+    (m, capacity) and `samples` of shape (n, SAMPLED, row) serve the first l, m and n runs; a row
     of samples has room for `lanes.WIDEST` more than it holds.
     """
     width = width_of(like)

@@ -37,10 +37,14 @@ from gearmesh.solver.workspace import (
     LOAD,
     LOG_TOLERANCE,
     LONGEST,
+    N_PLACES,
     OFFSET,
     ORDER,
     QUADRATIC,
     REMAINING,
+    SEEN_HALF_A,
+    SEEN_V,
+    SEEN_Y,
     SIGN,
     STEP,
     TWO_MU,
@@ -143,15 +147,14 @@ class _Damping:
 def _expand(rows, powers):
     """Write the series from the state, with damping of the given powers.
 
-    The two newest coefficients, v_k and b'_k, enter those of the next degree by one multiply-add
-    each: the processor works on all the rest while it waits for these.
+    From v_k to v_k+1 it is one multiply-add: the processor works on all else while it waits.
     """
     damping = _Damping(rows, powers)
     y, v, b, rate = [rows[Y]], damping.v, [rows[B]], [rows[B + 1]]  # rate is b'
     recoil = -rows[TWO_MU]
     share = recoil - 1.0
     stiffness, support = (rows[FRICTION] + share) * rows[ELASTIC], -rows[BEARING_STIFFNESS]
-    recoil_stiffness = recoil * rows[ELASTIC]
+    recoil_stiffness, bearing_damped = recoil * rows[ELASTIC], -rows[BEARING_DAMPING]
     damped, recoil_damped = share * damping.slope, recoil * damping.slope
     for k in range(ORDER):
         part = 1.0 / (k + 1.0)
@@ -169,11 +172,10 @@ def _expand(rows, powers):
         if inner is not None:
             v_known = share.times_plus(inner, v_known)
             rate_known = recoil.times_plus(inner, rate_known)
-        bearing_damped = rows[BEARING_DAMPING] * -part
-        v_known = bearing_damped.times_plus(rate[k], v_known * part)
-        rate_known = (recoil_damped * part).times_plus(v[k], rate_known * part)
-        v.append((damped * part).times_plus(v[k], v_known))
-        rate.append(bearing_damped.times_plus(rate[k], rate_known))
+        v_known = bearing_damped.times_plus(rate[k], v_known)
+        rate_known = bearing_damped.times_plus(rate[k], recoil_damped.times_plus(v[k], rate_known))
+        v.append((damped * part).times_plus(v[k], v_known * part))
+        rate.append(rate_known * part)
     for k in range(ORDER + 1):
         rows[Y + k] = y[k]
         rows[B + k] = b[k]
@@ -217,6 +219,29 @@ def choose_step(like, work):
     store(work, STEP, step)
 
 
+def _look(rows):
+    """Write y, v and half the acceleration at the places of the step, all in one pass."""
+    places = [rows[STEP] * (j / N_PLACES) for j in range(1, N_PLACES + 1)]
+    y = [rows[Y + ORDER]] * N_PLACES
+    v = half_a = [None] * N_PLACES
+    for k in range(ORDER - 1, -1, -1):
+        coefficient = rows[Y + k]
+        half_a = [_horner(a, s, c) for a, s, c in zip(half_a, places, v, strict=True)]
+        v = [_horner(a, s, c) for a, s, c in zip(v, places, y, strict=True)]
+        y = [a.times_plus(s, coefficient) for a, s in zip(y, places, strict=True)]
+    for j in range(N_PLACES):
+        rows[SEEN_Y + j] = y[j]
+        rows[SEEN_V + j] = v[j]
+        rows[SEEN_HALF_A + j] = half_a[j]
+
+
+def _horner(value, s, coefficient):
+    return coefficient if value is None else value.times_plus(s, coefficient)
+
+
+look = unrolled(_look)
+
+
 @njit(inline="always")
 def evaluate(like, work, series, n, s):
     """Return the polynomial with `n` coefficients from row `series` at `s`."""
@@ -238,21 +263,8 @@ def evaluate_with_slope(like, work, series, n, s):
 
 
 @njit(inline="always")
-def evaluate_with_bend(like, work, series, n, s):
-    """Return the polynomial from row `series`, its slope and half its curvature at `s`."""
-    value = load(like, work, series + n - 1)
-    slope = spread(like, 0.0)
-    bend = slope
-    for k in range(n - 2, -1, -1):
-        bend = fma(bend, s, slope)
-        slope = fma(slope, s, value)
-        value = fma(value, s, load(like, work, series + k))
-    return value, slope, bend
-
-
-@njit(inline="always")
 def evaluate_with_twist(like, work, series, n, s):
-    """Return what `evaluate_with_bend` does, and a sixth of the third derivative at `s`."""
+    """Return the polynomial from row `series` and its first three Taylor coefficients at `s`."""
     value = load(like, work, series + n - 1)
     slope = spread(like, 0.0)
     bend = slope

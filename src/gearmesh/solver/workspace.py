@@ -5,8 +5,11 @@ numbers. What is told apart by a number (the regime, a stretch of the mesh perio
 is kept) is a whole number in its row, so that all lanes can be looked at in one go.
 """
 
-ORDER = 16
+ORDER = 18
 """Degree of the Taylor polynomials."""
+
+N_PLACES = 4
+"""Places of a step where its course is looked at for events, evenly up to its end."""
 
 MAX_SEGMENTS = 6
 """Most stretches of constant stiffness and friction sign in a mesh period."""
@@ -72,4 +75,7 @@ SEGMENT_LENGTH, SEGMENT_STIFFNESS, SEGMENT_FRICTION = (
 )
 """First rows of what belongs to the stretches: their lengths, c and g."""
 
-N_ROWS = SEGMENT_FRICTION + MAX_SEGMENTS
+SEEN_Y, SEEN_V, SEEN_HALF_A = (SEGMENT_FRICTION + MAX_SEGMENTS + N_PLACES * i for i in range(3))
+"""First rows of what is seen at the places of a step: y, v and half the acceleration."""
+
+N_ROWS = SEEN_HALF_A + N_PLACES
