@@ -132,6 +132,15 @@ def test_the_error_estimate_bounds_the_error():
     assert below <= 0.005 * len(batch)
 
 
+def test_a_tolerance_that_decides_no_step_still_estimates_errors():
+    """At 1e-8 the longest step decides, and a companion at 1e-6 would only repeat the run."""
+    chaotic, steady = simulate(
+        [problem(0.65, "a-conservative"), problem(0.65, "b-both")], tolerance=1e-8
+    )
+    assert chaotic.sensitive
+    assert 0.0 < steady.y_max_error < 1e-5
+
+
 def test_chaos_is_flagged_and_steady_motion_is_not():
     chaotic, steady = simulate([problem(0.85, "a-conservative"), problem(0.85, "b-both")])
     assert chaotic.sensitive

@@ -25,6 +25,12 @@ from numba.extending import (
 
 _DOUBLE = ir.DoubleType()
 _INT64 = ir.IntType(64)
+_BIT = ir.IntType(1)
+
+
+def _vector(element, width):
+    """Return the LLVM type of a vector; one of a single lane is a plain number."""
+    return element if width == 1 else ir.VectorType(element, width)
 
 
 class LaneType(types.Type):
@@ -46,24 +52,37 @@ class MaskType(types.Type):
 @register_model(LaneType)
 class _LaneModel(models.PrimitiveModel):
     def __init__(self, dmm, fe_type):
-        super().__init__(dmm, fe_type, ir.VectorType(_DOUBLE, fe_type.width))
+        super().__init__(dmm, fe_type, _vector(_DOUBLE, fe_type.width))
 
 
 @register_model(MaskType)
 class _MaskModel(models.PrimitiveModel):
     def __init__(self, dmm, fe_type):
-        super().__init__(dmm, fe_type, ir.VectorType(ir.IntType(1), fe_type.width))
+        super().__init__(dmm, fe_type, _vector(_BIT, fe_type.width))
+
+
+def _numbers(values):
+    if len(values) == 1:
+        return ir.Constant(_DOUBLE, values[0])
+    return ir.Constant(ir.VectorType(_DOUBLE, len(values)), list(values))
 
 
 def _constant(width, value):
-    return ir.Constant(ir.VectorType(_DOUBLE, width), [value] * width)
+    return _numbers([value] * width)
 
 
 def _spread(builder, width, scalar):
+    if width == 1:
+        return scalar
     vector = ir.Constant(ir.VectorType(_DOUBLE, width), ir.Undefined)
     for lane in range(width):
         vector = builder.insert_element(vector, scalar, ir.Constant(ir.IntType(32), lane))
     return vector
+
+
+def _width(value):
+    """Return the number of lanes of an LLVM value."""
+    return getattr(value.type, "count", 1)
 
 
 def _binary(operation, result, build):
@@ -187,54 +206,71 @@ def spread(typingctx, like, scalar):
     return like(like, scalar), codegen
 
 
-def _element_pointer(context, builder, array_type, array, index_type, index, width, stride):
-    data = context.make_array(array_type)(context, builder, array).data
-    offset = context.cast(builder, index, index_type, types.intp)
-    offset = builder.mul(offset, ir.Constant(offset.type, stride))
-    return builder.bitcast(builder.gep(data, [offset]), ir.VectorType(_DOUBLE, width).as_pointer())
+_POINTER = types.CPointer(types.float64)
 
 
 @intrinsic
-def load(typingctx, like, array, row):
-    """Return row `row` of a flat float64 array whose rows have one element for each lane."""
+def pointer_to(typingctx, array):
+    """Return where a float64 array begins.
+
+    Functions that pass a workspace on by its pointer count no references, which takes as long as
+    dozens of operations; the caller has to keep the array.
+    """
 
     def codegen(context, builder, sig, args):
-        pointer = _element_pointer(
-            context, builder, sig.args[1], args[1], sig.args[2], args[2], like.width, like.width
-        )
-        return builder.load(pointer, align=8)
+        return context.make_array(sig.args[0])(context, builder, args[0]).data
 
-    return like(like, array, row), codegen
+    return _POINTER(array), codegen
 
 
-def _storing(stride_of):
+def _row_pointer(builder, data, row, width):
+    offset = builder.mul(row, ir.Constant(row.type, width))
+    return builder.bitcast(builder.gep(data, [offset]), _vector(_DOUBLE, width).as_pointer())
+
+
+@intrinsic
+def load(typingctx, like, work, row):
+    """Return row `row` of a workspace whose rows have one element for each lane."""
+
     def codegen(context, builder, sig, args):
-        width = sig.args[2].width
-        pointer = _element_pointer(
-            context, builder, sig.args[0], args[0], sig.args[1], args[1], width, stride_of(width)
-        )
-        builder.store(args[2], pointer, align=8)
+        row = context.cast(builder, args[2], sig.args[2], types.intp)
+        return builder.load(_row_pointer(builder, args[1], row, like.width), align=8)
+
+    return like(like, _POINTER, row), codegen
+
+
+@intrinsic
+def store(typingctx, work, row, value):
+    """Write `value` to row `row` of a workspace."""
+
+    def codegen(context, builder, sig, args):
+        row = context.cast(builder, args[1], sig.args[1], types.intp)
+        builder.store(args[2], _row_pointer(builder, args[0], row, value.width), align=8)
         return context.get_dummy_value()
 
-    return codegen
-
-
-@intrinsic
-def store(typingctx, array, row, value):
-    """Write `value` to row `row` of a flat float64 array."""
-    return types.void(array, row, value), _storing(lambda width: width)
+    return types.void(_POINTER, row, value), codegen
 
 
 @intrinsic
 def store_at(typingctx, array, index, value):
     """Write the lanes of `value` to consecutive elements of a flat array, from `index` on."""
-    return types.void(array, index, value), _storing(lambda width: 1)
+
+    def codegen(context, builder, sig, args):
+        data = context.make_array(sig.args[0])(context, builder, args[0]).data
+        index = context.cast(builder, args[1], sig.args[1], types.intp)
+        kind = _vector(_DOUBLE, value.width).as_pointer()
+        builder.store(args[2], builder.bitcast(builder.gep(data, [index]), kind), align=8)
+        return context.get_dummy_value()
+
+    return types.void(array, index, value), codegen
 
 
-def _call(builder, name, vector_type, *args):
-    suffix = f"v{vector_type.count}f64"
-    kind = ir.FunctionType(vector_type, [vector_type] * len(args))
-    function = cgutils.get_or_insert_function(builder.module, kind, f"llvm.{name}.{suffix}")
+def _call(builder, name, *args):
+    kind, width = args[0].type, _width(args[0])
+    suffix = "f64" if width == 1 else f"v{width}f64"
+    function_type = ir.FunctionType(kind, [kind] * len(args))
+    name = f"llvm.{name}.{suffix}"
+    function = cgutils.get_or_insert_function(builder.module, function_type, name)
     return builder.call(function, args)
 
 
@@ -243,7 +279,7 @@ def fma(typingctx, a, b, c):
     """Return a b + c with one rounding."""
 
     def codegen(context, builder, sig, args):
-        return _call(builder, "fma", args[0].type, *args)
+        return _call(builder, "fma", *args)
 
     return a(a, b, c), codegen
 
@@ -253,7 +289,7 @@ def magnitude(typingctx, a):
     """Return |a|."""
 
     def codegen(context, builder, sig, args):
-        return _call(builder, "fabs", args[0].type, *args)
+        return _call(builder, "fabs", *args)
 
     return a(a), codegen
 
@@ -268,12 +304,18 @@ def select(typingctx, mask, a, b):
     return a(mask, a, b), codegen
 
 
+def _bits(builder, mask):
+    """Return the lanes of a mask as the bits of an integer."""
+    width = _width(mask)
+    return mask if width == 1 else builder.bitcast(mask, ir.IntType(width))
+
+
 @intrinsic
 def any_lane(typingctx, mask):
     """Return whether `mask` is set in some lane."""
 
     def codegen(context, builder, sig, args):
-        bits = builder.bitcast(args[0], ir.IntType(mask.width))
+        bits = _bits(builder, args[0])
         return builder.icmp_unsigned("!=", bits, ir.Constant(bits.type, 0))
 
     return types.boolean(mask), codegen
@@ -284,8 +326,7 @@ def lane_bits(typingctx, mask):
     """Return `mask` as an integer, lane 0 in its lowest bit."""
 
     def codegen(context, builder, sig, args):
-        bits = builder.bitcast(args[0], ir.IntType(mask.width))
-        return builder.zext(bits, _INT64)
+        return builder.zext(_bits(builder, args[0]), _INT64)
 
     return types.int64(mask), codegen
 
@@ -305,8 +346,7 @@ def lane_numbers(typingctx, like):
     """Return 0, 1, 2, ... in the lanes."""
 
     def codegen(context, builder, sig, args):
-        kind = ir.VectorType(_DOUBLE, like.width)
-        return ir.Constant(kind, [float(lane) for lane in range(like.width)])
+        return _numbers([float(lane) for lane in range(like.width)])
 
     return like(like), codegen
 
@@ -321,7 +361,7 @@ class _Traced:
     def _operand(self, other):
         if isinstance(other, _Traced):
             return other.value
-        return _constant(self.value.type.count, float(other))
+        return _constant(_width(self.value), float(other))
 
     def __add__(self, other):
         return _Traced(self.builder, self.builder.fadd(self.value, self._operand(other)))
@@ -338,26 +378,46 @@ class _Traced:
     def times_plus(self, factor, summand):
         """Return self factor + summand with one rounding."""
         operands = (self.value, self._operand(factor), self._operand(summand))
-        return _Traced(self.builder, _call(self.builder, "fma", self.value.type, *operands))
+        return _Traced(self.builder, _call(self.builder, "fma", *operands))
+
+    def times_each(self, factors):
+        """Return self times each of the factors, side by side in one longer vector."""
+        width = _width(self.value)
+        constant = _numbers([factor for factor in factors for _ in range(width)])
+        repeated = self.repeated(len(factors)).value
+        return _Traced(self.builder, self.builder.fmul(repeated, constant))
+
+    def repeated(self, times):
+        """Return self several times, side by side in one longer vector."""
+        width = _width(self.value)
+        if width == 1:
+            return _Traced(self.builder, _spread(self.builder, times, self.value))
+        places = [i % width for i in range(times * width)]
+        mask = ir.Constant(ir.VectorType(ir.IntType(32), len(places)), places)
+        return _Traced(self.builder, self.builder.shuffle_vector(self.value, self.value, mask))
 
 
 class _Rows:
-    """The rows of a workspace while a function is being unrolled."""
+    """The rows of a workspace while a function is being unrolled.
+
+    A longer vector that is written to a row fills the rows after it too.
+    """
 
     def __init__(self, builder, data, width):
         self.builder = builder
         self.data = data
-        self.kind = ir.VectorType(_DOUBLE, width)
+        self.width = width
 
-    def _pointer(self, row):
-        offset = ir.Constant(_INT64, row * self.kind.count)
-        return self.builder.bitcast(self.builder.gep(self.data, [offset]), self.kind.as_pointer())
+    def _pointer(self, row, kind):
+        offset = ir.Constant(_INT64, row * self.width)
+        return self.builder.bitcast(self.builder.gep(self.data, [offset]), kind.as_pointer())
 
     def __getitem__(self, row):
-        return _Traced(self.builder, self.builder.load(self._pointer(row), align=8))
+        pointer = self._pointer(row, _vector(_DOUBLE, self.width))
+        return _Traced(self.builder, self.builder.load(pointer, align=8))
 
     def __setitem__(self, row, traced):
-        self.builder.store(traced.value, self._pointer(row), align=8)
+        self.builder.store(traced.value, self._pointer(row, traced.value.type), align=8)
 
 
 def unrolled(function):
@@ -371,11 +431,10 @@ def unrolled(function):
     @intrinsic
     def compiled(typingctx, like, work):
         def codegen(context, builder, sig, args):
-            data = context.make_array(sig.args[1])(context, builder, args[1]).data
-            function(_Rows(builder, data, sig.args[0].width))
+            function(_Rows(builder, args[1], like.width))
             return context.get_dummy_value()
 
-        return types.void(like, work), codegen
+        return types.void(like, _POINTER), codegen
 
     return compiled
 
@@ -390,8 +449,8 @@ def coarse_log2(typingctx, a):
 
     def codegen(context, builder, sig, args):
         width = a.width
-        bits = builder.bitcast(args[0], ir.VectorType(_INT64, width))
-        value = builder.sitofp(bits, ir.VectorType(_DOUBLE, width))
+        bits = builder.bitcast(args[0], _vector(_INT64, width))
+        value = builder.sitofp(bits, _vector(_DOUBLE, width))
         value = builder.fmul(value, _constant(width, 2.0**-52))
         return builder.fsub(value, _constant(width, 1023.0))
 
@@ -406,7 +465,7 @@ def coarse_exp2(typingctx, a):
         width = a.width
         value = builder.fadd(args[0], _constant(width, 1023.0))
         value = builder.fmul(value, _constant(width, 2.0**52))
-        bits = builder.fptosi(value, ir.VectorType(_INT64, width))
-        return builder.bitcast(bits, ir.VectorType(_DOUBLE, width))
+        bits = builder.fptosi(value, _vector(_INT64, width))
+        return builder.bitcast(bits, _vector(_DOUBLE, width))
 
     return a(a), codegen

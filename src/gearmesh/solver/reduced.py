@@ -20,6 +20,8 @@ from gearmesh.stiffness import in_double_contact, switch_phases
 _EXTREMA_PER_PERIOD = 64
 # Equal wheels: the pitch point halves the single contact.
 _PITCH_PHASE = 0.5
+# Where the longest step decides and not the tolerance, this sets a companion apart from its run.
+_SHORTENING = 0.9
 # Samples that are closer to a switch than rounding can tell are on it.
 _ON_EDGE = 1e-9
 
@@ -29,7 +31,14 @@ def _build_vector_sweep(sources: str, cache: bool):
     def compiled(work, runs, summaries, strobes, extrema, samples, samples_per_period):
         sources  # noqa: B018 (see persistent)
         sweep.sweep(
-            lanes.zeros8(), work, runs, summaries, strobes, extrema, samples, samples_per_period
+            lanes.zeros8(),
+            lanes.pointer_to(work),
+            runs,
+            summaries,
+            strobes,
+            extrema,
+            samples,
+            samples_per_period,
         )
 
     return compiled
@@ -40,7 +49,14 @@ def _build_scalar_sweep(sources: str, cache: bool):
     def compiled(work, runs, summaries, strobes, extrema, samples, samples_per_period):
         sources  # noqa: B018 (see persistent)
         sweep.sweep(
-            lanes.zeros1(), work, runs, summaries, strobes, extrema, samples, samples_per_period
+            lanes.zeros1(),
+            lanes.pointer_to(work),
+            runs,
+            summaries,
+            strobes,
+            extrema,
+            samples,
+            samples_per_period,
         )
 
     return compiled
@@ -132,6 +148,7 @@ def _run(problem: Problem, tolerance: float, samples_per_period: int) -> list[fl
         2.0 * problem.bearing_damping_ratio * frequency,
         *(problem.initial_state or (1.0 - bearing, 0.0, bearing, 0.0)),
         math.log2(tolerance),
+        taylor.LONGEST_ANGLE,
     ]
 
 
@@ -144,6 +161,7 @@ def integrate(
     # Companions follow the runs and leave nothing but their summaries.
     runs = np.array(rows + rows if estimate_errors else rows).view(sweep.RUN)[:, 0]
     runs["log_tolerance"][n:] = math.log2(tolerance * LOOSENING)
+    runs["longest_angle"][n:] *= _SHORTENING
     kept = max(problem.kept_revolutions * problem.teeth for problem in problems)
     summaries = np.zeros(len(runs), sweep.SUMMARY)
     summaries["y_max"] = -np.inf

@@ -36,7 +36,6 @@ from gearmesh.solver.lanes import (
 )
 from gearmesh.solver.stops import cross_level, enter, next_segment
 from gearmesh.solver.taylor import (
-    LONGEST_ANGLE,
     choose_step,
     direction,
     evaluate,
@@ -62,6 +61,7 @@ from gearmesh.solver.workspace import (
     MATERIAL,
     MAX_SEGMENTS,
     MOST_STEPS,
+    N_PLACES,
     N_ROWS,
     ORDER,
     PERIOD,
@@ -69,6 +69,8 @@ from gearmesh.solver.workspace import (
     QUADRATIC,
     REGIME,
     REMAINING,
+    SEEN_V,
+    SEEN_Y,
     SEGMENT,
     SEGMENT_FRICTION,
     SEGMENT_LENGTH,
@@ -106,13 +108,15 @@ RUN = np.dtype(
         ("bearing_damping", np.float64),
         ("start", np.float64, 4),
         ("log_tolerance", np.float64),
+        ("longest_angle", np.float64),
     ]
 )
 """One run as the kernel takes it, times in tau_s; whole numbers too are kept as floating ones.
 
 For each stretch of constant stiffness and friction sign in a mesh period: its length, C/C_s, the
 share of the elastic force that friction adds to u'', and the number of the first sample of the
-period behind it. `start` is (u, u', b, b').
+period behind it. `start` is (u, u', b, b'), `longest_angle` bounds a step times the highest
+natural frequency.
 """
 
 SUMMARY = np.dtype([*MEASURED, ("final", np.float64, 4)])
@@ -181,7 +185,7 @@ def _begin(work, width, lane, runs, summaries, strobes, index):
         _set(work, width, SEGMENT_STIFFNESS + i, lane, run.stiffness[i])
         _set(work, width, SEGMENT_FRICTION + i, lane, run.friction[i])
     highest = np.sqrt(stiffest * (1.0 + run.two_mu) + run.bearing_stiffness)
-    _set(work, width, LONGEST, lane, LONGEST_ANGLE / highest)
+    _set(work, width, LONGEST, lane, run.longest_angle / highest)
     _set(work, width, LENGTH, lane, run.length[0])
     _set(work, width, REMAINING, lane, run.length[0])
     _set(work, width, SEGMENTS, lane, run.segments)
@@ -297,11 +301,17 @@ def _take_step(like, work):
     """Move every lane to the end of its step."""
     zero = spread(like, 0.0)
     duration = load(like, work, TAKEN)
-    y, v = evaluate_with_slope(like, work, Y, ORDER + 1, duration)
+    turned = load(like, work, EVENT) == spread(like, TURNED)
+    if any_lane(turned | (load(like, work, EVENT) == spread(like, CROSSED))):
+        y, v = evaluate_with_slope(like, work, Y, ORDER + 1, duration)
+        # v is 0 at a turning point, to the last bit.
+        v = select(turned, zero, v)
+    else:
+        # The last place that was looked at is the end: the same numbers, sooner.
+        y, v = load(like, work, SEEN_Y + N_PLACES - 1), load(like, work, SEEN_V + N_PLACES - 1)
     b, rate = evaluate_with_slope(like, work, B, ORDER + 1, duration)
     store(work, Y, y)
-    # v is 0 at a turning point, to the last bit.
-    store(work, Y + 1, select(load(like, work, EVENT) == spread(like, TURNED), zero, v))
+    store(work, Y + 1, v)
     store(work, B, b)
     store(work, B + 1, rate)
     since_stop = load(like, work, SINCE_STOP) + duration
@@ -381,7 +391,7 @@ def _sample(work, width, lane, run, samples, per_period):
 def sweep(like, work, runs, summaries, strobes, extrema, samples, samples_per_period):
     """Integrate all `runs` (see `RUN`); results stand at the index of the run.
 
-    `work` has N_ROWS rows of as many elements as there are lanes, best aligned to one row.
+    `work` points to N_ROWS rows of as many elements as there are lanes, best aligned to one row.
     `summaries` has one row for each run. `strobes` of shape (l, periods + 1, 2), `extrema` of shape
     (m, capacity) and `samples` of shape (n, SAMPLED, row) serve the first l, m and n runs; a row
     of samples has room for `lanes.WIDEST` more than it holds.

@@ -172,10 +172,10 @@ def _expand(rows, powers):
         if inner is not None:
             v_known = share.times_plus(inner, v_known)
             rate_known = recoil.times_plus(inner, rate_known)
-        v_known = bearing_damped.times_plus(rate[k], v_known)
-        rate_known = bearing_damped.times_plus(rate[k], recoil_damped.times_plus(v[k], rate_known))
-        v.append((damped * part).times_plus(v[k], v_known * part))
-        rate.append(rate_known * part)
+        v_known = (damped * part).times_plus(v[k], v_known * part)
+        rate_known = (recoil_damped * part).times_plus(v[k], rate_known * part)
+        v.append((bearing_damped * part).times_plus(rate[k], v_known))
+        rate.append((bearing_damped * part).times_plus(rate[k], rate_known))
     for k in range(ORDER + 1):
         rows[Y + k] = y[k]
         rows[B + k] = b[k]
@@ -221,22 +221,15 @@ def choose_step(like, work):
 
 def _look(rows):
     """Write y, v and half the acceleration at the places of the step, all in one pass."""
-    places = [rows[STEP] * (j / N_PLACES) for j in range(1, N_PLACES + 1)]
-    y = [rows[Y + ORDER]] * N_PLACES
-    v = half_a = [None] * N_PLACES
+    places = rows[STEP].times_each([(j + 1) / N_PLACES for j in range(N_PLACES)])
+    y, v, half_a = rows[Y + ORDER].repeated(N_PLACES), None, None
     for k in range(ORDER - 1, -1, -1):
-        coefficient = rows[Y + k]
-        half_a = [_horner(a, s, c) for a, s, c in zip(half_a, places, v, strict=True)]
-        v = [_horner(a, s, c) for a, s, c in zip(v, places, y, strict=True)]
-        y = [a.times_plus(s, coefficient) for a, s in zip(y, places, strict=True)]
-    for j in range(N_PLACES):
-        rows[SEEN_Y + j] = y[j]
-        rows[SEEN_V + j] = v[j]
-        rows[SEEN_HALF_A + j] = half_a[j]
-
-
-def _horner(value, s, coefficient):
-    return coefficient if value is None else value.times_plus(s, coefficient)
+        half_a = v if half_a is None else half_a.times_plus(places, v)
+        v = y if v is None else v.times_plus(places, y)
+        y = y.times_plus(places, rows[Y + k].repeated(N_PLACES))
+    rows[SEEN_Y] = y
+    rows[SEEN_V] = v
+    rows[SEEN_HALF_A] = half_a
 
 
 look = unrolled(_look)
