@@ -14,7 +14,7 @@ import sys
 from dataclasses import asdict, dataclass
 from pathlib import Path
 
-from benchmarks import table, work_precision
+from benchmarks import start, table, work_precision
 from benchmarks.cases import SWEEP, singles, sweeps
 from benchmarks.measure import AIM, SHARE, Accuracy, Contest, measured, sparse
 from benchmarks.peers import OURS, OURS_WITH_LESS, PEERS, Solve, Solver
@@ -59,12 +59,14 @@ def main() -> int:
     points, entries = _scan(solvers, runs, of_runs)
     _say("times")
     rows = _rows(entries, runs, one_each)
+    _say("start of the command")
     results = {
         "machine": _machine(),
         "aim": {"error": AIM, "share_of_runs": SHARE},
         "left_out": left_out,
         "sensitive": {"amplification_above": SENSITIVE, "nu": sensitive},
         "table": rows,
+        "start_seconds": start.seconds(),
         "work_precision": [asdict(point) for point in points],
     }
     RESULTS.write_text(json.dumps(results, indent=1, ensure_ascii=False) + "\n")

@@ -27,6 +27,11 @@ def render(results: dict) -> str:
             + (f"{single / ours['single']:10.2f}" if single else f"{'–':>10}")
         )
     lines += _ratios(rows, times, results["aim"]["error"])
+    start = results["start_seconds"]
+    lines.append(
+        f"gearmesh simulate, a whole process: {start['first']:.1f} s the first time, with "
+        f"compilation, {start['later']:.2f} s later"
+    )
     for name, reason in results["left_out"].items():
         lines.append(f"left out: {name}: {reason}")
     left_out = results["sensitive"]["nu"]

@@ -1,6 +1,9 @@
 """The fast solver: what must not change an answer, and what an answer must obey."""
 
+import subprocess
+import sys
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -261,6 +264,31 @@ def test_a_run_that_never_ends_is_given_up(monkeypatch):
     assert failed.status == "step_limit"
     assert np.isnan(failed.y_max)
     assert good.status == "ok"
+
+
+def test_memory_stays_flat_over_a_sweep():
+    """A process that solves twenty times as many runs is no larger for it."""
+    few, many = (_peak_memory(sweeps) for sweeps in (2, 40))
+    assert many < few + 16 * 2**20
+
+
+def _peak_memory(sweeps: int) -> int:
+    """Return the largest size, in bytes, of a process that solves sweeps of 256 runs."""
+    script = f"""
+import resource, sys
+import numpy as np
+from gearmesh.integrator import simulate
+from test_integrator import problem
+for _ in range({sweeps}):
+    simulate([problem(nu, "d-both") for nu in np.linspace(0.6, 1.2, 256)], samples_per_period=16)
+unit = 1 if sys.platform == "darwin" else 1024
+print(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * unit)
+"""
+    command = [sys.executable, "-c", script]
+    run = subprocess.run(
+        command, cwd=Path(__file__).parent, capture_output=True, text=True, check=True
+    )
+    return int(run.stdout)
 
 
 def test_extremum_kind_names_the_upper_ends():
