@@ -4,6 +4,7 @@ Everything here is dimensionless: lengths in static deflections y_st, times in
 tau_s = Omega_s t counted from the start of the run, forces in the static mesh force F_st.
 """
 
+import math
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -154,7 +155,7 @@ def assemble(
         strobe_v=strobes[:, 1].copy(),
         y_max=float(summary["y_max"]),
         y_min=float(summary["y_min"]),
-        y_rms=float(np.sqrt(summary["square_integral"] / duration)),
+        y_rms=math.sqrt(summary["square_integral"] / duration),
         contact_loss_fraction=float(summary["loss_time"]) / duration,
         inverse_mesh_fraction=float(summary["inverse_time"]) / duration,
         n_contact_losses=int(summary["contact_losses"]),

@@ -92,6 +92,11 @@ class Stretch(NamedTuple):
     gamma: float
 
 
+def _pattern(problem: Problem) -> tuple[float, float, bool]:
+    """Return what the stretches of a mesh period depend on."""
+    return problem.contact_ratio, problem.initial_phase, problem.friction_coefficient != 0.0
+
+
 @lru_cache
 def _stretches(contact_ratio: float, initial_phase: float, friction: bool) -> list[Stretch]:
     """Cut a mesh period at every switch, and at the pitch point where friction turns."""
@@ -106,21 +111,18 @@ def _stretches(contact_ratio: float, initial_phase: float, friction: bool) -> li
     return stretches
 
 
-def _stretches_of(problem: Problem) -> list[Stretch]:
-    friction = problem.friction_coefficient != 0.0
-    return _stretches(problem.contact_ratio, problem.initial_phase, friction)
-
-
-def _sample_ends(stretches: list[Stretch], per_period: int) -> list[int]:
+@lru_cache
+def _sample_ends(pattern: tuple[float, float, bool], per_period: int) -> list[int]:
     """Return the number of the first sample behind each stretch; one at its end is behind it."""
-    edges = accumulate(stretch.length for stretch in stretches)
+    edges = accumulate(stretch.length for stretch in _stretches(*pattern))
     return [math.ceil(edge * per_period - _ON_EDGE) for edge in edges]
 
 
 def _run(problem: Problem, tolerance: float, samples_per_period: int) -> list[float]:
     """Return `problem` in the form that the compiled sweep takes, a row of `sweep.RUN`."""
     period = problem.period
-    stretches = _stretches_of(problem)
+    pattern = _pattern(problem)
+    stretches = _stretches(*pattern)
     friction = problem.friction_coefficient * math.tan(problem.pressure_angle)
     rest = [0.0] * (workspace.MAX_SEGMENTS - len(stretches))
     high, low = problem.stiffness_max, problem.stiffness_min
@@ -135,7 +137,7 @@ def _run(problem: Problem, tolerance: float, samples_per_period: int) -> list[fl
         *rest,
         *[friction * stretch.gamma for stretch in stretches],
         *rest,
-        *_sample_ends(stretches, samples_per_period),
+        *_sample_ends(pattern, samples_per_period),
         *rest,
         period,
         periods,
@@ -245,6 +247,7 @@ class _Samples:
 
     def _of_stretches(self, value: Callable[[Stretch], float]) -> np.ndarray:
         """Return what belongs to the stretches of a mesh period, for every sample."""
-        stretches = _stretches_of(self._problem)
-        counts = np.diff(_sample_ends(stretches, self._per_period), prepend=0)
-        return np.tile(np.repeat([value(stretch) for stretch in stretches], counts), self._kept)
+        pattern = _pattern(self._problem)
+        values = [value(stretch) for stretch in _stretches(*pattern)]
+        counts = np.diff(_sample_ends(pattern, self._per_period), prepend=0)
+        return np.tile(np.repeat(values, counts), self._kept)
