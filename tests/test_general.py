@@ -1,4 +1,4 @@
-"""The general solver: closed forms, limits, and what a right solution must obey."""
+"""Closed forms and limits, for both solvers; and what the general one must obey besides."""
 
 import math
 from dataclasses import replace
@@ -18,6 +18,16 @@ from gearmesh.solver.general import integrate
 
 IMMOVABLE = 1e30
 """Body mass with which y_3 - y_2 keeps its value, so that y'' = 1 - N is all that is left."""
+
+
+def sweep(case, tolerance=1e-10, samples_per_period=0, estimate_errors=True):
+    return simulate([case], tolerance, samples_per_period, estimate_errors)[0]
+
+
+@pytest.fixture(params=[integrate, sweep], ids=["general", "sweep"])
+def solve(request):
+    """Return a solver of one run."""
+    return request.param
 
 
 def strobes(response):
@@ -49,16 +59,16 @@ def oscillator(y, v=0.0, c=1.0, **changes):
         {"material": (0.6, 0.0, 0.0), "bearing_stiffness": 20.0, "initial_phase": 0.4},
     ],
 )
-def test_linear_regime_agrees_with_matrix_exponentials(changes):
+def test_linear_regime_agrees_with_matrix_exponentials(solve, changes):
     case = problem(0.7, friction_coefficient=0.0, kept_revolutions=5, **changes)
-    response = integrate(case, 1e-13)
+    response = solve(case, 1e-13)
     assert response.y_min > 0.0
     np.testing.assert_allclose(strobes(response), linear_strobes(case), atol=1e-11, rtol=0)
 
 
-def test_free_flight_is_a_parabola():
+def test_free_flight_is_a_parabola(solve):
     """With y = 1 + 2 cos t, contact is left at v = -sqrt(3) and regained 2 sqrt(3) later."""
-    response = integrate(oscillator(3.0, backlash=2.0), 1e-12, 64)
+    response = solve(oscillator(3.0, backlash=2.0), 1e-12, 64)
     period = 2.0 * (math.pi - math.acos(0.5)) + 2.0 * math.sqrt(3.0)
     maxima = response.extremum_kind == MAXIMUM
     np.testing.assert_allclose(response.extremum_y[maxima], 3.0, atol=1e-9)
@@ -73,10 +83,10 @@ def test_free_flight_is_a_parabola():
     )
 
 
-def test_back_flank_contact_in_closed_form():
+def test_back_flank_contact_in_closed_form(solve):
     """Energy gives the turning point beyond -s: depth^2 / 2 - (s + depth) ... = (y - 1)^2 / 2."""
     backlash = 0.5
-    response = integrate(oscillator(3.0, backlash=backlash), 1e-12)
+    response = solve(oscillator(3.0, backlash=backlash), 1e-12)
     level = 0.5 * 3.0**2 - 3.0
     # depth^2 / 2 + backlash + depth = level
     depth = math.sqrt(1.0 + 2.0 * (level - backlash)) - 1.0
@@ -86,9 +96,9 @@ def test_back_flank_contact_in_closed_form():
 
 
 @pytest.mark.parametrize("depth", [1e-3, 1e-6, 1e-9, 1e-12])
-def test_grazing_contact_loss_is_not_missed(depth):
+def test_grazing_contact_loss_is_not_missed(solve, depth):
     """y = 1 + (1 + depth) cos t dips through 0 for a time of 2 sqrt(2 depth)."""
-    response = integrate(oscillator(2.0 + depth, revolutions=1), 1e-13)
+    response = solve(oscillator(2.0 + depth, revolutions=1), 1e-15)
     duration = 21 * response.period
     dips = int(duration / (2.0 * math.pi) + 0.5)
     assert response.n_contact_losses == dips
@@ -97,8 +107,8 @@ def test_grazing_contact_loss_is_not_missed(depth):
     assert response.contact_loss_fraction == pytest.approx(lost, rel=0.02)
 
 
-def test_grazing_from_above_loses_no_contact():
-    response = integrate(oscillator(2.0 - 1e-9, revolutions=1), 1e-13)
+def test_grazing_from_above_loses_no_contact(solve):
+    response = solve(oscillator(2.0 - 1e-9, revolutions=1), 1e-13)
     assert response.n_contact_losses == 0
     assert response.y_min == pytest.approx(1e-9, rel=0.01)
 
@@ -120,7 +130,7 @@ def test_energy_is_conserved_through_contact_loss_and_back_flank_contact(backlas
     assert energy(case, final, 0.9) == pytest.approx(energy(case, state, 0.9), abs=1e-9)
 
 
-def trace(nu, damping=0.0):
+def trace(solve, nu, damping=0.0):
     """Return the trace of the period map of y'' + 2 damping y' + C(t) y = 1."""
     starts = [(1.0, 0.0), (1.1, 0.0), (1.0, 0.1)]
     ends = []
@@ -137,26 +147,26 @@ def trace(nu, damping=0.0):
             initial_phase=0.75,
             initial_state=(y, v, 0.0, 0.0),
         )
-        response = integrate(case, 1e-13, estimate_errors=False)
+        response = solve(case, 1e-13, estimate_errors=False)
         assert response.y_min > 0.0
         ends.append(strobes(response)[1])
     return period_map_trace(np.array(starts), np.array(ends))
 
 
-def test_floquet_multipliers_leave_the_unit_circle_in_the_third_tongue():
+def test_floquet_multipliers_leave_the_unit_circle_in_the_third_tongue(solve):
     """At its edges the multipliers are -1 twice: the trace of the period map is -2."""
-    low = brentq(lambda nu: trace(nu) + 2.0, 0.650, 0.660, xtol=1e-7)
-    high = brentq(lambda nu: trace(nu) + 2.0, 0.662, 0.672, xtol=1e-7)
+    low = brentq(lambda nu: trace(solve, nu) + 2.0, 0.650, 0.660, xtol=1e-7)
+    high = brentq(lambda nu: trace(solve, nu) + 2.0, 0.662, 0.672, xtol=1e-7)
     assert low == pytest.approx(0.65562, abs=6e-6)
     assert high == pytest.approx(0.66734, abs=6e-6)
 
 
-def test_the_third_tongue_vanishes_above_a_damping_ratio():
+def test_the_third_tongue_vanishes_above_a_damping_ratio(solve):
     """Multipliers -m and -d/m with the product d: one leaves at the trace -(1 + d)."""
 
     def margin(nu, damping):
         product = math.exp(-2.0 * damping * 2.0 * math.pi / nu)
-        return trace(nu, damping) + 1.0 + product
+        return trace(solve, nu, damping) + 1.0 + product
 
     middle = np.linspace(0.6605, 0.6625, 5)
     assert min(margin(nu, 0.00885) for nu in middle) < 0.0
@@ -171,7 +181,7 @@ LIMITS = [
 
 
 @pytest.mark.parametrize(("changes", "level"), LIMITS)
-def test_limits_have_constant_coefficients(changes, level):
+def test_limits_have_constant_coefficients(solve, changes, level):
     case = replace(
         problem(0.8, "c-both", friction_coefficient=0.0, initial_state=(4.0, 0.0, -2.0, 0.0)),
         **changes,
@@ -187,13 +197,13 @@ def test_limits_have_constant_coefficients(changes, level):
         stiffness_harmonics=0,
     )
     np.testing.assert_allclose(
-        strobes(integrate(case, 1e-12)), strobes(integrate(plain, 1e-12)), atol=1e-10
+        strobes(solve(case, 1e-12)), strobes(solve(plain, 1e-12)), atol=1e-10
     )
 
 
-def test_static_equilibrium_stays_where_it_is():
+def test_static_equilibrium_stays_where_it_is(solve):
     case = problem(0.8, "b-both", stiffness_max=1.0, stiffness_min=1.0, friction_coefficient=0.0)
-    response = integrate(case, 1e-10)
+    response = solve(case, 1e-10)
     assert response.y_max == pytest.approx(1.0, abs=1e-12)
     assert response.y_min == pytest.approx(1.0, abs=1e-12)
 
