@@ -136,12 +136,25 @@ def test_the_error_estimate_bounds_the_error():
 
 
 def test_a_tolerance_that_decides_no_step_still_estimates_errors():
-    """At 1e-8 the longest step decides, and a companion at 1e-6 would only repeat the run."""
+    """Where stops decide, a companion with another tolerance alone would repeat the run."""
     chaotic, steady = simulate(
         [problem(0.65, "a-conservative"), problem(0.65, "b-both")], tolerance=1e-8
     )
     assert chaotic.sensitive
     assert 0.0 < steady.y_max_error < 1e-5
+    # Short stretches, no damping: each displacement of the start grows a billion times.
+    growing = problem(
+        2.2596,
+        "a-conservative",
+        contact_ratio=1.411,
+        body_mass=3.586,
+        bearing_stiffness=0.162,
+        bearing_damping_ratio=0.0032,
+        friction_coefficient=0.3,
+        initial_phase=0.968,
+        backlash=10.4,
+    )
+    assert simulate([growing], tolerance=1e-11)[0].sensitive
 
 
 def test_chaos_is_flagged_and_steady_motion_is_not():

@@ -32,8 +32,9 @@ def simulate(
     samples_per_period : int
         Samples of the time course in each kept mesh period; 0 for none.
     estimate_errors : bool
-        Whether every run has a companion, `LOOSENING` times less accurate, for the estimates
-        `Response.y_max_error`, `y_min_error` and `sensitive`. Costs as much as the run.
+        Whether every run has a companion, `LOOSENING` times less accurate and displaced by the
+        tolerance at the start, for the estimates `Response.y_max_error`, `y_min_error` and
+        `sensitive`. Costs as much as the run.
 
     Returns
     -------

@@ -15,6 +15,7 @@ from gearmesh import motion, response, stiffness
 from gearmesh.friction import follows_run_out, pairs_in_contact
 from gearmesh.motion import (
     CONTACT_LOSS,
+    ROTATION_3,
     Problem,
     bearing_damping,
     dynamic_force,
@@ -69,8 +70,9 @@ def integrate(
     order : int, optional
         Degree of the Taylor polynomials, 4 to 28; by default what suits the tolerance.
     estimate_errors : bool
-        Whether the run has a companion, `LOOSENING` times less accurate, whose difference gives
-        `Response.y_max_error` and `y_min_error`. Costs as much as the run.
+        Whether the run has a companion, `LOOSENING` times less accurate and displaced by the
+        tolerance at the start, whose difference gives `Response.y_max_error` and `y_min_error`.
+        Costs as much as the run.
 
     Returns
     -------
@@ -83,7 +85,7 @@ def integrate(
     companion = None
     if estimate_errors:
         loose = tolerance * LOOSENING
-        companion, *_ = _run(problem, loose, 0, order or suitable_order(loose))
+        companion, *_ = _run(problem, loose, 0, order or suitable_order(loose), tolerance)
     return assemble(
         summary,
         companion,
@@ -97,7 +99,13 @@ def integrate(
     )
 
 
-def _run(problem: Problem, tolerance: float, samples_per_period: int, order: int):
+def _run(
+    problem: Problem,
+    tolerance: float,
+    samples_per_period: int,
+    order: int,
+    displacement: float = 0.0,
+):
     """Return the summary, the final state, strobes, extrema and samples of one run."""
     periods = problem.revolutions * problem.teeth
     kept = problem.kept_revolutions * problem.teeth
@@ -107,6 +115,7 @@ def _run(problem: Problem, tolerance: float, samples_per_period: int, order: int
     summaries = np.zeros(1, SUMMARY)
     summaries["y_max"], summaries["y_min"] = -np.inf, np.inf
     state = np.concatenate(start(problem))
+    state[ROTATION_3] += displacement
     _compiled_run(
         _case(problem, tolerance, order),
         _stretches(problem),

@@ -20,8 +20,6 @@ from gearmesh.stiffness import in_double_contact, switch_phases
 _EXTREMA_PER_PERIOD = 64
 # Equal wheels: the pitch point halves the single contact.
 _PITCH_PHASE = 0.5
-# Where the longest step decides and not the tolerance, this sets a companion apart from its run.
-_SHORTENING = 0.9
 # Samples that are closer to a switch than rounding can tell are on it.
 _ON_EDGE = 1e-9
 
@@ -150,7 +148,6 @@ def _run(problem: Problem, tolerance: float, samples_per_period: int) -> list[fl
         2.0 * problem.bearing_damping_ratio * frequency,
         *(problem.initial_state or (1.0 - bearing, 0.0, bearing, 0.0)),
         math.log2(tolerance),
-        taylor.LONGEST_ANGLE,
     ]
 
 
@@ -163,7 +160,8 @@ def integrate(
     # Companions follow the runs and leave nothing but their summaries.
     runs = np.array(rows + rows if estimate_errors else rows).view(sweep.RUN)[:, 0]
     runs["log_tolerance"][n:] = math.log2(tolerance * LOOSENING)
-    runs["longest_angle"][n:] *= _SHORTENING
+    # Displaced, they tell of a sensitive orbit even where stops decide the steps, not tolerances.
+    runs["start"][n:, 0] += tolerance
     kept = max(problem.kept_revolutions * problem.teeth for problem in problems)
     summaries = np.zeros(len(runs), sweep.SUMMARY)
     summaries["y_max"] = -np.inf

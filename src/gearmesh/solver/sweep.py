@@ -36,6 +36,7 @@ from gearmesh.solver.lanes import (
 )
 from gearmesh.solver.stops import cross_level, enter, next_segment
 from gearmesh.solver.taylor import (
+    LONGEST_ANGLE,
     choose_step,
     direction,
     evaluate,
@@ -108,15 +109,13 @@ RUN = np.dtype(
         ("bearing_damping", np.float64),
         ("start", np.float64, 4),
         ("log_tolerance", np.float64),
-        ("longest_angle", np.float64),
     ]
 )
 """One run as the kernel takes it, times in tau_s; whole numbers too are kept as floating ones.
 
 For each stretch of constant stiffness and friction sign in a mesh period: its length, C/C_s, the
 share of the elastic force that friction adds to u'', and the number of the first sample of the
-period behind it. `start` is (u, u', b, b'), `longest_angle` bounds a step times the highest
-natural frequency.
+period behind it. `start` is (u, u', b, b').
 """
 
 SUMMARY = np.dtype([*MEASURED, ("final", np.float64, 4)])
@@ -185,7 +184,7 @@ def _begin(work, width, lane, runs, summaries, strobes, index):
         _set(work, width, SEGMENT_STIFFNESS + i, lane, run.stiffness[i])
         _set(work, width, SEGMENT_FRICTION + i, lane, run.friction[i])
     highest = np.sqrt(stiffest * (1.0 + run.two_mu) + run.bearing_stiffness)
-    _set(work, width, LONGEST, lane, run.longest_angle / highest)
+    _set(work, width, LONGEST, lane, LONGEST_ANGLE / highest)
     _set(work, width, LENGTH, lane, run.length[0])
     _set(work, width, REMAINING, lane, run.length[0])
     _set(work, width, SEGMENTS, lane, run.segments)
