@@ -63,6 +63,34 @@ def test_a_damaged_batch_file_is_made_again_from_the_cases(tiny, copied):
     assert copied.results() == tiny.results()
 
 
+def test_a_plan_names_a_lost_case_file_and_leaves_a_damaged_one(copied):
+    copied.path(CASE).unlink()
+    assert copied.plan("data") == {"cases_1", "datasets", "data"}
+    other = copied.path("results/cases/c-material/nu-0.8000.nc")
+    alter_secretly(other)
+    copied.plan("data")
+    assert other.exists()
+
+
+@pytest.mark.parametrize("harm", [Path.unlink, Path.touch])
+def test_a_case_file_can_be_asked_for_by_its_name(tiny, copied, harm):
+    harm(copied.path(CASE))
+    assert copied.run(CASE).returncode == 0
+    assert copied.results() == tiny.results()
+
+
+def test_another_study_in_between_leaves_no_trace(tiny, copied):
+    """It writes some of the same case files with other parameters, and fewer batches."""
+    other = "base: tiny.yaml\nassumed: {backlash: 70 um}\nstudy: {cases_per_job: 100}\n"
+    copied.path("config/other.yaml").write_text(other + "reasons: {backlash: a trial}\n")
+    copied.config = "config/other.yaml"
+    assert counts(copied) == (14, 0)
+    assert copied.results() != tiny.results()
+    copied.config = tiny.config
+    assert counts(copied) == (14, 0)
+    assert copied.results() == tiny.results()
+
+
 def test_a_touched_case_file_reruns_nothing(copied):
     copied.path(CASE).touch()
     assert copied.plan("data") == set()

@@ -154,6 +154,7 @@ def _values(response: Response) -> Iterator[tuple[Field, object]]:
             yield field, getattr(response.samples, field.name)
 
 
+@functools.lru_cache(maxsize=2**13)
 def case_digest(parameters: Parameters, case: Case) -> str:
     """Return the SHA-256 of all that decides the numbers of a case.
 

@@ -5,7 +5,7 @@ DATASETS = pipeline.script("make_datasets")
 rule datasets:
     input:
         sources=pipeline.sources(DATASETS),
-        batches=[PLAN.batch_file(batch) for batch in PLAN.batches],
+        batches=PLAN.batch_files,
     output:
         str(paths.RESONANCE),
         str(paths.BIFURCATION),
