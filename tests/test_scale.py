@@ -64,7 +64,7 @@ import resource, sys
 from pathlib import Path
 from gearmesh import batches, casefile, datasets
 from gearmesh.configuration import load_study
-from gearmesh.integrator import simulate
+from gearmesh.response import Response
 
 folder, count = Path(sys.argv[1]), int(sys.argv[2])
 grid = f"{{start: 0.6, stop: {0.6 + (count - 1) * 1e-4:.4f}, step: 1e-4}}"
@@ -72,8 +72,7 @@ study = load_study("config/paper.yaml", [
     f"study.nu={grid}", "study.variants=[b-material, b-lubricant, c-material, c-lubricant]",
     "study.strong_damping=", "study.time_courses={}"])
 cases = study.cases()
-[response] = simulate([study.parameters.problem(cases[0].variant, 0.6)])
-row = casefile.record(response, study.parameters)  # the same for all: only sizes matter here
+row = casefile.record(Response("ok", 9.5), study.parameters)  # only sizes matter here
 files = []
 for batch in batches.partition(cases, 600):
     files.append(folder / f"{batch.name}.nc")
