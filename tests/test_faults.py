@@ -123,6 +123,28 @@ def test_results_that_cannot_be_written_are_told(fresh):
         assert "results: cannot be written" in finished.stdout
 
 
+WRONG = {
+    "assumed: {backlsh: 40 um}": "assumed.backlsh: unknown key (did you mean 'backlash'?)",
+    "study: {nu: {step: 1e-9}}": "study.nu.step: makes 600000001 frequencies; allowed are at most",
+    "title: !!python/object/apply:os.system [touch results]": "tags (!) are not supported",
+}
+
+
+@pytest.mark.parametrize("text", WRONG)
+def test_a_wrong_configuration_is_told_before_anything_is_written(fresh, text):
+    fresh.path("config/tiny.yaml").write_text(f"base: paper.yaml\n{text}\n")
+    before = sorted(fresh.folder.iterdir())
+    finished = fresh.run("data")
+    assert finished.returncode == 2
+    (line,) = (line for line in finished.stdout.splitlines() if line.startswith("gearmesh:"))
+    assert line.startswith("gearmesh: error: config/tiny.yaml: ")
+    assert WRONG[text] in line
+    assert "Traceback" not in finished.stdout
+    snakemake_s_own = fresh.path(".snakemake")
+    assert sorted(set(fresh.folder.iterdir()) - {snakemake_s_own}) == before
+    assert not fresh.path("results").exists()
+
+
 def test_two_runs_at_once_do_not_disturb_each_other(tiny, fresh):
     first = fresh.start("data")
     wait_for(fresh.path("results/.journal").exists, first)

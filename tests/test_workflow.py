@@ -1,6 +1,8 @@
 """The pipeline on the small study: what it leaves, and what an edit reruns."""
 
+import json
 import re
+import zipfile
 from pathlib import Path
 
 import pytest
@@ -49,6 +51,20 @@ def test_the_progress_line_tells_what_is_done_the_rate_and_the_time_left(tmp_pat
     job.note({"kept": 100})
     job.note({"computed": 300, "failed": 2})
     assert job.progress() == "400 of 1000 cases, 20 a second, 30 s left"
+
+
+def test_snakemake_s_own_report_shows_every_figure_with_its_caption(smoke):
+    made = smoke.run("all", options=("--report", "report.zip"))
+    assert made.returncode == 0, made.stdout
+    with zipfile.ZipFile(smoke.path("report.zip")) as archive:
+        listed = {Path(name).name: name for name in archive.namelist()}
+        page = archive.read(listed["report.html"]).decode()
+        for name in ("fig1", *FIGURES):
+            drawn = smoke.path(f"results/figures/{name}.png").read_bytes()
+            assert archive.read(listed[f"{name}.png"]) == drawn
+    for name in ("fig1", *FIGURES, "claims", "page", "workflow"):
+        caption = smoke.path(f"workflow/report/{name}.rst").read_text(encoding="utf-8")
+        assert json.dumps(caption.splitlines()[0][:60])[1:-1] in page, name
 
 
 def test_datasets_hold_what_the_case_files_hold(smoke):

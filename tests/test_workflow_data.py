@@ -135,9 +135,13 @@ def test_another_size_of_batches_computes_nothing_and_changes_no_byte(tiny, copi
     assert without_batches(copied) == without_batches(tiny)
 
 
-def test_cores_and_batches_change_no_byte_of_a_fresh_run(tiny, tmp_path):
-    fresh = Project.create(tmp_path / "fresh", "config/tiny.yaml")
-    fresh.edit("config/tiny.yaml", "cases_per_job: 7", "cases_per_job: 100")
+def test_cores_batches_order_and_place_change_no_byte_of_a_fresh_run(tiny, tmp_path):
+    """One core, smaller batches, the last one first, odd names, and memory that is not blank."""
+    fresh = Project.create(tmp_path / "a folder", "config/a study, été.yaml")
+    fresh.path("config/tiny.yaml").rename(fresh.path(fresh.config))
+    fresh.edit(fresh.config, "cases_per_job: 7", "cases_per_job: 5")
+    fresh.environment |= {"MALLOC_PERTURB_": "77"}
+    assert fresh.run("results/batches/batch-0002.nc", cores=1).returncode == 0
     assert fresh.run("data", cores=1).returncode == 0
     assert without_batches(fresh) == without_batches(tiny)
 

@@ -23,4 +23,4 @@ for batch in PLAN.batches:
             members=PLAN.members(batch),
             index=batch.index,
         shell:
-            "python workflow/scripts/compute_cases.py $STUDY {params.index} 2>&1 | tee {log}"
+            'python workflow/scripts/compute_cases.py "$STUDY" {params.index} 2>&1 | tee {log}'

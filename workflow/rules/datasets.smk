@@ -15,4 +15,4 @@ rule datasets:
         recipe=PLAN.recipe,
         grid=PLAN.grid,
     shell:
-        "python workflow/scripts/make_datasets.py $STUDY {input.batches} 2>&1 | tee {log}"
+        'python workflow/scripts/make_datasets.py "$STUDY" {input.batches} 2>&1 | tee {log}'
