@@ -2,6 +2,7 @@
 
 import os
 import re
+import shutil
 from pathlib import Path
 
 import pytest
@@ -89,6 +90,16 @@ def test_another_study_in_between_leaves_no_trace(tiny, copied):
     copied.config = tiny.config
     assert counts(copied) == (14, 0)
     assert copied.results() == tiny.results()
+
+
+def test_results_without_snakemake_s_records_are_not_taken_on_trust(tiny, copied):
+    shutil.rmtree(copied.path(".snakemake"))
+    assert counts(copied) == (0, 0)
+    assert copied.results() == tiny.results()
+    shutil.rmtree(copied.path(".snakemake"))
+    copied.edit("config/paper.yaml", "damping: 3.9537", "damping: 4.1")
+    assert counts(copied) == (10, 4)
+    assert copied.results()["datasets/resonance.nc"] != tiny.results()["datasets/resonance.nc"]
 
 
 def test_a_touched_case_file_reruns_nothing(copied):

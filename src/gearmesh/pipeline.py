@@ -18,6 +18,8 @@ from gearmesh.job import tell
 
 SCRIPTS = Path("workflow/scripts")
 _SETTINGS = ("study",)
+_RECORDS = (Path(".snakemake/metadata"), Path(".snakemake/incomplete"))
+"""Where Snakemake keeps what it knows of files, and of those that are being made."""
 
 
 @dataclass(frozen=True)
@@ -110,6 +112,8 @@ class Plan:
         for file in (paths.RESONANCE, paths.BIFURCATION, *self.batch_files):
             if Path(file).exists() and not casefile.is_whole(Path(file)):
                 _drop(file, "damaged", only_tell)
+        if not any(any(folder.glob("*")) for folder in _RECORDS):
+            self._distrust(only_tell)
         known = {}
         for batch in self.batches:
             files = {
@@ -143,6 +147,17 @@ class Plan:
                 _drop(file, "of another study", only_tell)
             lacking += others
         return lacking
+
+    def _distrust(self, only_tell: bool) -> None:
+        """Delete what may be of other parameters, where Snakemake's records of them are gone.
+
+        Without a record Snakemake takes a file for what is wanted. Case files and batch files say
+        themselves what they are; all else follows from the files that are named here.
+        """
+        outdated = [self.batch_file(batch) for batch in self.batches if not self._is_current(batch)]
+        for file in (*outdated, paths.RESONANCE, paths.THRESHOLDS, paths.check_file("printed")):
+            if Path(file).exists():
+                _drop(file, "without a record of its parameters", only_tell)
 
     def _is_current(self, batch: Batch) -> bool:
         wanted = casefile.recipe(batches.attributes(self.study.parameters, batch))
