@@ -18,8 +18,9 @@ min_version("9.0")
 
 try:
     PLAN = pipeline.load(config, workflow.configfiles)
+    KNOWN = {}
     if workflow.is_main_process:
-        PLAN.drop_damaged(only_tell=workflow.dryrun)
+        KNOWN = PLAN.look(asked=sys.argv, only_tell=workflow.output_settings.dryrun)
 except InputError as error:
     job.tell(f"error: {error}")
     sys.exit(job.BAD_INPUT)
@@ -45,13 +46,15 @@ localrules:
 
 rule all:
     input:
-        PLAN.computed,
+        PLAN.batch_files,
+        KNOWN.values(),
         paths.VERDICT,
 
 
 rule data:
     input:
-        PLAN.computed,
+        PLAN.batch_files,
+        KNOWN.values(),
         paths.RESONANCE,
         paths.BIFURCATION,
 

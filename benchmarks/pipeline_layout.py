@@ -16,6 +16,7 @@ from pathlib import Path
 ROOT = Path(__file__).parents[1]
 COPIED = ("Snakefile", "config", "notebooks", "src", "workflow")
 CORES = "2"
+PROFILE = ("--profile", "workflow/profiles/default")
 PLAIN_CASES = 24
 
 SAMPLE = """\
@@ -44,24 +45,28 @@ def main() -> None:
     """Measure both and print the ratio."""
     with tempfile.TemporaryDirectory(prefix="layout-") as name:
         folder = Path(name)
-        for part in COPIED:
-            source = ROOT / part
-            copy = shutil.copytree if source.is_dir() else shutil.copy2
-            copy(source, folder / part)
+        copy_project(folder)
         (folder / "config" / "sample.yaml").write_text(SAMPLE)
         (folder / "Plain").write_text(PLAIN.format(count=PLAIN_CASES, python=sys.executable))
-        _run(folder, "-s", "Plain", "plain/nu-0.6000.nc")  # compiles where that is needed
+        run(folder, "-s", "Plain", "plain/nu-0.6000.nc")  # compiles where that is needed
         shutil.rmtree(folder / "plain")
-        plain = PLAIN_CASES / _run(folder, "-s", "Plain")
-        profile = ("--profile", "workflow/profiles/default")
-        seconds = _run(folder, *profile, "--config", "study=config/sample.yaml", "--", "data")
+        plain = PLAIN_CASES / run(folder, "-s", "Plain")
+        seconds = run(folder, *PROFILE, "--config", "study=config/sample.yaml", "--", "data")
         count = sum(1 for _ in (folder / "results" / "cases").rglob("*.nc"))
         print(f"one job a case: {plain:.2f} cases a second ({PLAIN_CASES} cases)")
         print(f"batches:        {count / seconds:.0f} cases a second ({count} cases, datasets too)")
         print(f"ratio:          {count / seconds / plain:.0f}")
 
 
-def _run(folder: Path, *arguments: str) -> float:
+def copy_project(folder: Path) -> None:
+    """Copy what the pipeline needs, with what is compiled."""
+    for part in COPIED:
+        source = ROOT / part
+        copy = shutil.copytree if source.is_dir() else shutil.copy2
+        copy(source, folder / part)
+
+
+def run(folder: Path, *arguments: str) -> float:
     """Run Snakemake; returns the seconds that it took."""
     environment = os.environ | {"PYTHONPATH": str(folder / "src")}
     command = [sys.executable, "-m", "snakemake", "--cores", CORES, *arguments]

@@ -111,6 +111,18 @@ def test_the_seal_notices_every_harm(written, tmp_path):
     assert not casefile.is_whole(harmed)
 
 
+def test_the_seal_is_found_wherever_it_stands(written, tmp_path, monkeypatch):
+    """A block of a large file may end anywhere in it."""
+    harmed = tmp_path / "harmed.nc"
+    content = written.read_bytes()
+    harmed.write_bytes(content[:-1] + bytes([content[-1] ^ 1]))
+    start = content.index(b"gearmesh-seal ")
+    for block in (start - 1, start, start + 1, start + 13, start + 14, start + 100, 1000, 7):
+        monkeypatch.setattr(casefile, "_BLOCK", block)
+        assert casefile.is_whole(written), block
+        assert not casefile.is_whole(harmed), block
+
+
 def test_the_seal_tells_what_a_file_holds(written, parameters):
     wanted = casefile.attributes(parameters, CASE)
     assert casefile.is_whole(written, casefile.recipe(wanted))

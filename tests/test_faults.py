@@ -9,7 +9,6 @@ import random
 import shutil
 import signal
 import subprocess
-import sys
 import time
 from pathlib import Path
 
@@ -123,6 +122,28 @@ def test_results_that_cannot_be_written_are_told(fresh):
         assert "results: cannot be written" in finished.stdout
 
 
+WRONG = {
+    "assumed: {backlsh: 40 um}": "assumed.backlsh: unknown key (did you mean 'backlash'?)",
+    "study: {nu: {step: 1e-9}}": "study.nu.step: makes 600000001 frequencies; allowed are at most",
+    "title: !!python/object/apply:os.system [touch results]": "tags (!) are not supported",
+}
+
+
+@pytest.mark.parametrize("text", WRONG)
+def test_a_wrong_configuration_is_told_before_anything_is_written(fresh, text):
+    fresh.path("config/tiny.yaml").write_text(f"base: paper.yaml\n{text}\n")
+    before = sorted(fresh.folder.iterdir())
+    finished = fresh.run("data")
+    assert finished.returncode == 2
+    (line,) = (line for line in finished.stdout.splitlines() if line.startswith("gearmesh:"))
+    assert line.startswith("gearmesh: error: config/tiny.yaml: ")
+    assert WRONG[text] in line
+    assert "Traceback" not in finished.stdout
+    snakemake_s_own = fresh.path(".snakemake")
+    assert sorted(set(fresh.folder.iterdir()) - {snakemake_s_own}) == before
+    assert not fresh.path("results").exists()
+
+
 def test_two_runs_at_once_do_not_disturb_each_other(tiny, fresh):
     first = fresh.start("data")
     wait_for(fresh.path("results/.journal").exists, first)
@@ -164,27 +185,21 @@ def test_a_case_that_fails_stops_nothing_else(fresh):
     assert np.isnan(resonance["y_max"].sel(variant="c-material")).all()
 
 
-def test_a_kernel_that_dies_leaves_the_notebook_and_is_told(fresh):
-    notebook = fresh.path("notebooks/fig2.ipynb")
-    notebook.write_text(
-        notebook.read_text(encoding="utf-8").replace(
-            "from gearmesh.claims import",
-            "import os; os.kill(os.getpid(), 9)\\nfrom gearmesh.claims import",
-            1,
-        ),
-        encoding="utf-8",
+def test_a_kernel_that_dies_is_told_and_heals(smoke, tmp_path):
+    project = smoke.copy(tmp_path / "project")
+    notebook = project.path("notebooks/fig2.ipynb")
+    text = notebook.read_text(encoding="utf-8")
+    project.edit(
+        "notebooks/fig2.ipynb",
+        "from gearmesh.claims import",
+        "import os; os.kill(os.getpid(), 9)\\nfrom gearmesh.claims import",
     )
-    executed = fresh.path("results/notebooks/fig2.ipynb")
-    command = [sys.executable, "workflow/scripts/run_notebook.py", notebook, executed]
-    finished = subprocess.run(
-        command,
-        cwd=fresh.folder,
-        env=fresh.environment,
-        capture_output=True,
-        text=True,
-        check=False,
-    )
-    assert finished.returncode == 1
-    assert "died" in finished.stderr
-    assert "run again" in finished.stderr
-    assert executed.exists()
+    finished = project.run("results/figures/fig2.png")
+    assert finished.returncode != 0
+    assert "died" in finished.stdout
+    assert "run again" in finished.stdout
+    assert not project.path("results/figures/fig2.png").exists()
+    assert project.path("results/notebooks/fig2.ipynb").exists()
+    notebook.write_text(text, encoding="utf-8")
+    assert project.run("results/figures/fig2.png").returncode == 0
+    assert project.results() == smoke.results()

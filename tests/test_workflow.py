@@ -1,11 +1,16 @@
 """The pipeline on the small study: what it leaves, and what an edit reruns."""
 
+import json
+import re
+import zipfile
 from pathlib import Path
 
 import pytest
 import xarray as xr
 import yaml
 from project import Project
+
+from gearmesh import job
 
 FIGURES = [f"fig{number}" for number in range(2, 8)]
 
@@ -29,10 +34,37 @@ def test_everything_that_the_contract_lists_is_there(smoke):
 
 
 def test_a_run_tells_its_progress_and_its_end(smoke):
-    assert "299 of 299 cases" in smoke.output
-    assert "cases: 299 computed, 0 kept" in smoke.output
-    assert "time of jobs: cases" in smoke.output
-    assert "claims: " in smoke.output
+    assert re.search(r"gearmesh: 299 of 299 cases, \d+ a second", smoke.output)
+    summary = smoke.output.partition("gearmesh: claims: ")[2]
+    assert re.match(r"\d+ reproduced, \d+ deviating, \d+ not testable", summary)
+    assert "cases: 299 computed, 0 kept" in summary
+    for stage in ("cases", "datasets", "thresholds", "figures", "ledger", "report"):
+        assert re.search(rf"time of jobs: .*{stage} [\d.]+ s", summary)
+
+
+def test_the_progress_line_tells_what_is_done_the_rate_and_the_time_left(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    job.begin_run(1000)
+    begun, _ = job.read_journal()
+    monkeypatch.setattr(job.time, "time", lambda: begun["start"] + 20.0)
+    assert job.progress() == "0 of 1000 cases, 0 a second"
+    job.note({"kept": 100})
+    job.note({"computed": 300, "failed": 2})
+    assert job.progress() == "400 of 1000 cases, 20 a second, 30 s left"
+
+
+def test_snakemake_s_own_report_shows_every_figure_with_its_caption(smoke):
+    made = smoke.run("all", options=("--report", "report.zip"))
+    assert made.returncode == 0, made.stdout
+    with zipfile.ZipFile(smoke.path("report.zip")) as archive:
+        listed = {Path(name).name: name for name in archive.namelist()}
+        page = archive.read(listed["report.html"]).decode()
+        for name in ("fig1", *FIGURES):
+            drawn = smoke.path(f"results/figures/{name}.png").read_bytes()
+            assert archive.read(listed[f"{name}.png"]) == drawn
+    for name in ("fig1", *FIGURES, "claims", "page", "workflow"):
+        caption = smoke.path(f"workflow/report/{name}.rst").read_text(encoding="utf-8")
+        assert json.dumps(caption.splitlines()[0][:60])[1:-1] in page, name
 
 
 def test_datasets_hold_what_the_case_files_hold(smoke):

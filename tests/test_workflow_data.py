@@ -2,6 +2,7 @@
 
 import os
 import re
+import shutil
 from pathlib import Path
 
 import pytest
@@ -63,26 +64,49 @@ def test_a_damaged_batch_file_is_made_again_from_the_cases(tiny, copied):
     assert copied.results() == tiny.results()
 
 
+def test_a_plan_names_a_lost_case_file_and_leaves_a_damaged_one(copied):
+    copied.path(CASE).unlink()
+    assert copied.plan("data") == {"cases_1", "datasets", "data"}
+    other = copied.path("results/cases/c-material/nu-0.8000.nc")
+    alter_secretly(other)
+    copied.plan("data")
+    assert other.exists()
+
+
+def test_a_case_file_can_be_asked_for_by_its_name(tiny, copied):
+    copied.path(CASE).unlink()
+    assert copied.run(CASE).returncode == 0
+    assert copied.results() == tiny.results()
+
+
+def test_results_without_snakemake_s_records_are_not_taken_on_trust(tiny, copied):
+    shutil.rmtree(copied.path(".snakemake"))
+    copied.edit("config/paper.yaml", "damping: 3.9537", "damping: 4.1")
+    assert counts(copied) == (10, 4)
+    assert copied.results()["datasets/resonance.nc"] != tiny.results()["datasets/resonance.nc"]
+
+
 def test_a_touched_case_file_reruns_nothing(copied):
     copied.path(CASE).touch()
     assert copied.plan("data") == set()
 
 
-def test_another_damping_leaves_the_conservative_cases(tiny, copied):
-    copied.edit("config/paper.yaml", "damping: 3.9537", "damping: 4.1")
+def test_another_damping_keeps_the_conservative_cases_and_may_be_undone(tiny, copied, tmp_path):
+    """A study that shares the folder writes the same case files, and fewer batches."""
+    other = "base: tiny.yaml\nprinted: {damping: 4.1 N s/mm}\nstudy: {cases_per_job: 100}\n"
+    fresh = Project.create(tmp_path / "fresh", "config/tiny.yaml")
+    for project in (copied, fresh):
+        project.config = "config/other.yaml"
+        project.path(project.config).write_text(other)
     assert counts(copied) == (10, 4)
+    assert counts(fresh) == (14, 0)
+    assert without_batches(copied) == without_batches(fresh)
     changed = {name for name, digest in copied.results().items() if tiny.results()[name] != digest}
     # Their files state the parameters of the study, and are written again for that.
     assert {"cases/a-conservative/nu-0.6000.nc", "datasets/resonance.nc"} <= changed
-
-
-def test_a_file_kept_under_new_parameters_is_that_of_a_fresh_run(copied, tmp_path):
-    copied.edit("config/paper.yaml", "damping: 3.9537", "damping: 4.1")
-    counts(copied)
-    fresh = Project.create(tmp_path / "fresh", "config/tiny.yaml")
-    fresh.edit("config/paper.yaml", "damping: 3.9537", "damping: 4.1")
-    assert counts(fresh) == (14, 0)
-    assert copied.results() == fresh.results()
+    copied.config = tiny.config
+    assert counts(copied) == (10, 4)
+    assert copied.results() == tiny.results()
 
 
 def test_more_frequencies_keep_the_cases_that_exist(tiny, copied):
@@ -107,9 +131,13 @@ def test_another_size_of_batches_computes_nothing_and_changes_no_byte(tiny, copi
     assert without_batches(copied) == without_batches(tiny)
 
 
-def test_cores_and_batches_change_no_byte_of_a_fresh_run(tiny, tmp_path):
-    fresh = Project.create(tmp_path / "fresh", "config/tiny.yaml")
-    fresh.edit("config/tiny.yaml", "cases_per_job: 7", "cases_per_job: 100")
+def test_cores_batches_order_and_place_change_no_byte_of_a_fresh_run(tiny, tmp_path):
+    """One core, smaller batches, the last one first, odd names, and memory that is not blank."""
+    fresh = Project.create(tmp_path / "a folder", "config/a study, été.yaml")
+    fresh.path("config/tiny.yaml").rename(fresh.path(fresh.config))
+    fresh.edit(fresh.config, "cases_per_job: 7", "cases_per_job: 5")
+    fresh.environment |= {"MALLOC_PERTURB_": "77"}
+    assert fresh.run("results/batches/batch-0002.nc", cores=1).returncode == 0
     assert fresh.run("data", cores=1).returncode == 0
     assert without_batches(fresh) == without_batches(tiny)
 

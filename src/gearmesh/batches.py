@@ -61,17 +61,21 @@ class Content:
 
     def split(self) -> Iterator["Content"]:
         """Yield the stretches of cases of one variant."""
-        ends = np.concatenate([[0], np.cumsum(self.counts)])
         first = 0
-        for name, group in itertools.groupby(self.variants):
+        for _, group in itertools.groupby(self.variants):
             last = first + len(list(group))
-            cases, extrema = slice(first, last), slice(ends[first], ends[last])
-            columns = {
-                name: self.columns[name][extrema if field.dimension == "extremum" else cases]
-                for field, name in STORED
-            }
-            yield Content([name] * (last - first), self.nu[cases], self.counts[cases], columns)
+            yield self.part(first, last)
             first = last
+
+    def part(self, first: int, last: int) -> "Content":
+        """Return the cases from `first` up to, but not including, `last`."""
+        ends = np.concatenate([[0], np.cumsum(self.counts)])
+        cases, extrema = slice(first, last), slice(ends[first], ends[last])
+        columns = {
+            name: self.columns[name][extrema if field.dimension == "extremum" else cases]
+            for field, name in STORED
+        }
+        return Content(self.variants[cases], self.nu[cases], self.counts[cases], columns)
 
 
 def partition(cases: Sequence[Case], size: int) -> list[Batch]:
@@ -162,6 +166,16 @@ def read_batch(path: Path) -> Content:
             counts=file["extremum_count"][:],
             columns={name: file[name][:] for _, name in STORED},
         )
+
+
+def read_counts(path: Path) -> np.ndarray:
+    """Read the numbers of extrema of the cases of a batch file, and no more."""
+    try:
+        with netCDF4.Dataset(path) as file:
+            file.set_auto_mask(False)
+            return file["extremum_count"][:]
+    except (OSError, IndexError):
+        raise InputError(f"{path}: missing or damaged; delete it and run again") from None
 
 
 def join(contents: Sequence[Content]) -> Content:

@@ -35,6 +35,8 @@ Record = dict[str, np.ndarray]
 _SEAL = b"gearmesh-seal "
 _DIGITS = 64
 _BLANK = b"0" * _DIGITS
+_SEAL_LENGTH = len(_SEAL) + 2 * _DIGITS + 1
+_BLOCK = 2**20
 _LITTLE_SPACE = 2**20
 
 
@@ -154,6 +156,7 @@ def _values(response: Response) -> Iterator[tuple[Field, object]]:
             yield field, getattr(response.samples, field.name)
 
 
+@functools.lru_cache(maxsize=2**13)
 def case_digest(parameters: Parameters, case: Case) -> str:
     """Return the SHA-256 of all that decides the numbers of a case.
 
@@ -242,7 +245,7 @@ def define(
     field: Field,
     name: str,
     dimensions: tuple[str, ...],
-    fill_value: float | bool = False,
+    fill_value: float | bool | None = False,
     **storage: object,
 ) -> netCDF4.Variable:
     """Create the variable of a field, or of its twin, with its attributes."""
@@ -295,7 +298,7 @@ def sealed(path: Path, made_of: str) -> Iterator[netCDF4.Dataset]:
 
 
 def _define_seal(file: netCDF4.Dataset) -> None:
-    file.createDimension("seal_length", len(_SEAL) + 2 * _DIGITS + 1)
+    file.createDimension("seal_length", _SEAL_LENGTH)
     seal = file.createVariable("seal", "S1", ("seal_length",), fill_value=False)
     seal.set_auto_chartostring(False)
     long_name = (
@@ -310,27 +313,45 @@ def _write_blank_seal(file: netCDF4.Dataset, made_of: str) -> None:
 
 def _seal(path: Path) -> None:
     """Put the checksum of a closed file into its seal."""
+    place, seal, digest = _look(path)
     with path.open("r+b") as file:
-        content = file.read()
-        place = content.index(_SEAL) + len(_SEAL) + _DIGITS + 1
-        file.seek(place)
-        file.write(hashlib.sha256(content).hexdigest().encode())
+        file.seek(place + len(seal) - _DIGITS)
+        file.write(digest)
 
 
 def is_whole(path: Path, made_of: str | None = None) -> bool:
     """Tell whether a sealed file is as it was written, and by the recipe `made_of` if given."""
     try:
-        content = path.read_bytes()
+        _, seal, digest = _look(path)
     except OSError:
         return False
-    start = content.find(_SEAL) + len(_SEAL)
-    place = start + _DIGITS + 1
-    if start < len(_SEAL) or made_of not in (None, content[start : place - 1].decode("latin-1")):
-        return False
-    digest = hashlib.sha256(content[:place])
-    digest.update(_BLANK)
-    digest.update(content[place + _DIGITS :])
-    return content[place : place + _DIGITS] == digest.hexdigest().encode()
+    recipe = seal[len(_SEAL) : -_DIGITS - 1].decode("latin-1")
+    return seal[-_DIGITS:] == digest and made_of in (None, recipe)
+
+
+def _look(path: Path) -> tuple[int, bytes, bytes]:
+    """Return the place of a file's seal, the seal, and the SHA-256 of the file with blank digits.
+
+    A dataset may be large, so no more than a block of it is in memory.
+    """
+    total, place, seal, overlap = hashlib.sha256(), 0, b"", b""
+    with path.open("rb", buffering=0) as file:
+        while block := file.read(_BLOCK):
+            block = overlap + block
+            overlap = b""
+            start = -1 if seal else block.find(_SEAL)
+            if start >= 0:
+                block += file.read(max(0, start + _SEAL_LENGTH - len(block)))
+                end = start + _SEAL_LENGTH
+                place, seal = place + start, block[start:end]
+                block = block[: end - _DIGITS] + _BLANK + block[end:]
+            elif not seal:  # it may begin where this block ends
+                cut = max(0, len(block) - len(_SEAL))
+                block, overlap = block[:cut], block[cut:]
+                place += cut
+            total.update(block)
+        total.update(overlap)
+    return place, seal, total.hexdigest().encode()
 
 
 def read_case(path: Path | str) -> tuple[dict[str, str | float], Record]:

@@ -33,6 +33,9 @@ _LABELS = (
     ("marker", "marker of Tab. 1"),
 )
 _COORDINATES = " ".join(("damping_factor", *(name for name, _ in _LABELS)))
+_BLOCK = 512
+"""Frequencies that are written at a time, which bounds the memory whatever their number."""
+
 _COMPRESSED = {"compression": "zlib", "complevel": 1, "shuffle": True}
 
 
@@ -61,13 +64,13 @@ def write_datasets(
     study : Study
         The study; it sets the variants, the frequencies and y_st.
     batch_files : sequence of Path
-        All its batches, in their order. One variant at a time is in memory.
+        All its batches, in their order. One of them at a time is in memory.
     resonance, bifurcation : Path
         Files to write.
     """
     plan = study.study.frequencies()
     nu = np.array(sorted({nu for _, nus in plan for nu in nus}))
-    longest = max(int(batches.read_batch(file).counts.max()) for file in batch_files)
+    longest = max(int(batches.read_counts(file).max()) for file in batch_files)
     sizes = {"variant": len(plan), "nu": nu.size}
     more = {"extremum": max(longest, 1), "boundary": casefile.boundaries(study.parameters)}
     with (
@@ -79,11 +82,13 @@ def write_datasets(
         for field in FIELDS:
             _define(sequences if field.dimension else scalars, field)
         rows = {variant.name: row for row, (variant, _) in enumerate(plan)}
-        for name, content in _by_variant(batch_files):
+        for name, start, content in _by_block(batch_files, nu):
+            block = nu[start : start + _BLOCK]
+            place = rows[name], slice(start, start + block.size)
             for field in FIELDS:
-                cells = _cells(field, content, nu, longest)
+                cells = _cells(field, content, block, longest)
                 file = sequences if field.dimension else scalars
-                _store(file, field, rows[name], cells, study.assumed.static_deflection)
+                _store(file, field, place, cells, study.assumed.static_deflection)
 
 
 @contextlib.contextmanager
@@ -97,6 +102,8 @@ def _created(
     }
     made_of = casefile.recipe(stated | sizes)
     with casefile.sealed(path, made_of) as file:
+        # A chunk may reach beyond the last frequency: what stands there must not be left to chance.
+        file.set_fill_on()
         file.setncatts(stated)
         for name, size in sizes.items():
             file.createDimension(name, size)
@@ -123,33 +130,55 @@ def _write_coordinates(file: netCDF4.Dataset, variants: Sequence[Variant], nu: n
 def _define(file: netCDF4.Dataset, field: Field) -> None:
     """Create a variable over (variant, nu), and its twin."""
     dimensions = ("variant", "nu", *([field.dimension] if field.dimension else []))
-    chunk = (1, *(file.dimensions[name].size for name in dimensions[1:]))
+    sizes = [file.dimensions[name].size for name in dimensions]
+    chunk = (1, min(sizes[1], _BLOCK), *sizes[2:])
     counts = field.kind != "f8" and field.name not in _FLAGS_OF_NO_CASE
     flags = {**(field.flags or {}), **_FLAGS_OF_NO_CASE.get(field.name, {})}
     field = replace(field, flags=flags)
     for name in filter(None, (field.name, field.relative)):
-        fill = NOT_COMPUTED if counts else False
+        fill = NOT_COMPUTED if counts else None
         variable = casefile.define(
             file, field, name, dimensions, fill, chunksizes=chunk, **_COMPRESSED
         )
         variable.coordinates = _COORDINATES
+        # Every chunk is written whole and once; megabytes of them for each variable would stay.
+        variable.set_var_chunk_cache(size=1)
 
 
 def _store(
-    file: netCDF4.Dataset, field: Field, row: int, cells: np.ndarray, static_deflection: float
+    file: netCDF4.Dataset,
+    field: Field,
+    place: tuple[int, slice],
+    cells: np.ndarray,
+    static_deflection: float,
 ) -> None:
-    """Write the row of a variant, in static deflections and in mm."""
+    """Write some frequencies of a variant, in static deflections and in mm."""
     if field.relative:
-        file[field.relative][row] = cells
+        file[field.relative][place] = cells
         cells = cells * static_deflection
-    file[field.name][row] = cells
+    file[field.name][place] = cells
 
 
-def _by_variant(batch_files: Iterable[Path]) -> Iterator[tuple[str, Content]]:
-    """Yield all cases of a variant at a time: batches hold them variant by variant."""
+def _by_block(batch_files: Iterable[Path], nu: np.ndarray) -> Iterator[tuple[str, int, Content]]:
+    """Yield variant, start of a block of frequencies, and the cases in it.
+
+    Batches hold the cases variant by variant, by ascending frequency. A block is a chunk of the
+    file, so that each chunk is written once, whatever the batches.
+    """
     pieces = (piece for file in batch_files for piece in batches.read_batch(file).split())
     for name, group in itertools.groupby(pieces, key=lambda piece: piece.variants[0]):
-        yield name, batches.join(list(group))
+        following = iter(group)
+        waiting = next(following)
+        for start in range(0, nu.size, _BLOCK):
+            last = nu[start : start + _BLOCK][-1]
+            while waiting.nu.size == 0 or waiting.nu[-1] < last:
+                more = next(following, None)
+                if more is None:
+                    break
+                waiting = batches.join([waiting, more])
+            end = int(np.searchsorted(waiting.nu, last, side="right"))
+            yield name, start, waiting.part(0, end)
+            waiting = waiting.part(end, waiting.nu.size)
 
 
 def _cells(field: Field, content: Content, nu: np.ndarray, longest: int) -> np.ndarray:

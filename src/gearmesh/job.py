@@ -13,6 +13,7 @@ import contextlib
 import fcntl
 import json
 import os
+import resource
 import sys
 import time
 from collections import Counter
@@ -46,15 +47,33 @@ def job(stage: str) -> Iterator[None]:
     stage : str
         One of `STAGES`.
     """
-    start = time.monotonic()
+    start, loading = time.monotonic(), time.process_time()
     try:
         with _open(JOBS_LOCK) as lock:
             fcntl.flock(lock, fcntl.LOCK_SH)
             yield
-            note({"stage": stage, "seconds": time.monotonic() - start})
+            seconds = time.monotonic() - start
+            note({"stage": stage, "seconds": seconds, "loading": loading, **used()})
     except InputError as error:
         tell(f"error: {error}")
         sys.exit(BAD_INPUT)
+
+
+@contextlib.contextmanager
+def part(name: str) -> Iterator[None]:
+    """Note the processor time of a part of a job, for `benchmarks.pipeline_stages`."""
+    start = time.process_time()
+    yield
+    note({"part": name, "processor": time.process_time() - start})
+
+
+def used() -> dict[str, float]:
+    """Return what this process and those that it waited for took: processor time and memory."""
+    own, others = map(resource.getrusage, (resource.RUSAGE_SELF, resource.RUSAGE_CHILDREN))
+    return {
+        "processor": sum(usage.ru_utime + usage.ru_stime for usage in (own, others)),
+        "megabytes": max(usage.ru_maxrss for usage in (own, others)) / 1024,
+    }
 
 
 def write_text(path: Path, text: str) -> None:
@@ -121,7 +140,7 @@ def note(work: dict[str, float | str]) -> None:
         journal.write(json.dumps(work) + "\n")
 
 
-def _journal() -> tuple[dict[str, float], list[dict[str, float | str]]]:
+def read_journal() -> tuple[dict[str, float], list[dict[str, float | str]]]:
     """Read the journal: what the run began with, and its work."""
     try:
         first, *others = map(json.loads, JOURNAL.read_text().splitlines())
@@ -132,7 +151,7 @@ def _journal() -> tuple[dict[str, float], list[dict[str, float | str]]]:
 
 def progress() -> str:
     """Return a line: cases done, cases a second, time left."""
-    first, work = _journal()
+    first, work = read_journal()
     done = Counter()
     for line in work:
         done.update({key: line[key] for key in ("computed", "kept") if key in line})
@@ -150,15 +169,17 @@ def tell_summary() -> None:
 
 
 def summary() -> list[str]:
-    """Return lines on what a run has done: its cases, and the time that each stage took."""
-    first, work = _journal()
+    """Return lines on what a run has done: claims, cases, the time and memory that jobs took."""
+    first, work = read_journal()
     seconds, cases = Counter(), Counter()
+    lines = []
     for line in work:
         if "stage" in line:
             seconds[line["stage"]] += line["seconds"]
-        else:
+        elif "claims" in line:
+            lines.append(line["claims"])
+        elif "part" not in line:
             cases.update(line)
-    lines = []
     if cases:
         told = [f"{cases['computed']} computed", f"{cases['kept']} kept"]
         told += [f"{cases['failed']} not integrated"] if cases["failed"] else []
@@ -167,4 +188,6 @@ def summary() -> list[str]:
     if stages:
         total = time.time() - first["start"]
         lines.append(f"time of jobs: {', '.join(stages)}; {total:.0f} s in all")
+        memory = max(line.get("megabytes", 0) for line in work)
+        lines.append(f"memory of a job: at most {memory:.0f} MB")
     return lines

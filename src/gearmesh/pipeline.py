@@ -3,7 +3,7 @@
 import hashlib
 import shlex
 import sys
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Container, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
@@ -18,6 +18,8 @@ from gearmesh.job import tell
 
 SCRIPTS = Path("workflow/scripts")
 _SETTINGS = ("study",)
+_RECORDS = (Path(".snakemake/metadata"), Path(".snakemake/incomplete"))
+"""Where Snakemake keeps what it knows of files, and of those that are being made."""
 
 
 @dataclass(frozen=True)
@@ -66,49 +68,106 @@ class Plan:
         """All that the configuration states, reasons and title too: what the report depends on."""
         return _digest(self.study.model_dump_json())
 
-    def case_file(self, case: Case) -> str:
-        """Return the file of a case."""
-        return str(paths.case_file(case.variant.name, case.nu))
-
-    def case_files(self, cases: Iterable[Case]) -> list[str]:
-        """Return the files of those cases that have one of their own."""
-        return [self.case_file(case) for case in cases if self.has_file(case)]
-
     def has_file(self, case: Case) -> bool:
         """Tell whether a case has a file of its own; one with a time course always has."""
         return self.study.study.case_files or case.time_course
 
     def time_courses(self, variants: Sequence[str]) -> list[str]:
-        """Return the case files of some variants that hold a time course."""
-        wanted = [c for c in self.cases if c.time_course and c.variant.name in variants]
-        return self.case_files(wanted)
+        """Return the batch files whose cases have time courses of some variants."""
+        return [
+            self.batch_file(batch)
+            for batch in self.batches
+            if any(case.time_course and case.variant.name in variants for case in batch.cases)
+        ]
 
     def members(self, batch: Batch) -> str:
         """Return what a batch depends on besides the recipe: which cases are in it."""
         return _digest([(c.variant.name, c.nu, c.time_course) for c in batch.cases])
 
-    @cached_property
-    def computed(self) -> list[str]:
-        """All case files and batch files."""
-        return self.case_files(self.cases) + [self.batch_file(batch) for batch in self.batches]
-
     def batch_file(self, batch: Batch) -> str:
         """Return the file of a batch."""
         return str(paths.batch_file(batch.name))
 
-    def drop_damaged(self, only_tell: bool) -> None:
-        """Delete files that are not as they were written, so that they are made again.
+    @cached_property
+    def batch_files(self) -> list[str]:
+        """The files of all batches."""
+        return [self.batch_file(batch) for batch in self.batches]
+
+    def look(self, asked: Container[str], only_tell: bool) -> dict[int, list[str]]:
+        """Look at every file that carries a seal; delete what is not as it was written.
 
         Parameters
         ----------
+        asked : container of str
+            Files that the command line asks for.
         only_tell : bool
-            Name them, but let them be.
+            Name what is to be made again, but let it be.
+
+        Returns
+        -------
+        dict of int to list of str
+            The case files of each batch, by its index, that Snakemake has to know of: those that
+            are asked for, and the first that lacks, with which come all others.
         """
-        for path in map(Path, [*self.computed, paths.RESONANCE, paths.BIFURCATION]):
-            if path.exists() and not casefile.is_whole(path):
-                tell(f"{path}: damaged, to be made again")
-                if not only_tell:
-                    path.unlink()
+        for file in (paths.RESONANCE, paths.BIFURCATION, *self.batch_files):
+            if Path(file).exists() and not casefile.is_whole(Path(file)):
+                _drop(file, "damaged", only_tell)
+        if not any(any(folder.glob("*")) for folder in _RECORDS):
+            self._distrust(only_tell)
+        known = {}
+        for batch in self.batches:
+            files = {
+                str(paths.case_file(case.variant.name, case.nu)): case
+                for case in batch.cases
+                if self.has_file(case)
+            }
+            lacking = self._lacking(batch, files, only_tell)[:1]
+            named = [file for file in files if file in asked and file not in lacking]
+            known[batch.index] = lacking + named
+        return known
+
+    def _lacking(self, batch: Batch, files: Mapping[str, Case], only_tell: bool) -> list[str]:
+        """Return the case files of a batch that are not there, or not as this study makes them."""
+        parameters = self.study.parameters
+        lacking, others = [], []
+        for file, case in files.items():
+            path = Path(file)
+            if casefile.is_whole(path, casefile.recipe(casefile.attributes(parameters, case))):
+                continue
+            if casefile.is_whole(path):
+                others.append(file)
+                continue
+            if path.exists():
+                _drop(file, "damaged", only_tell)
+            lacking.append(file)
+        # Files of other parameters beside a batch file of these: another study ran in between.
+        # Where the batch file is out of date too, its job runs anyway and keeps what it can.
+        if others and self._is_current(batch):
+            for file in others:
+                _drop(file, "of another study", only_tell)
+            lacking += others
+        return lacking
+
+    def _distrust(self, only_tell: bool) -> None:
+        """Delete what may be of other parameters, where Snakemake's records of them are gone.
+
+        Without a record Snakemake takes a file for what is wanted. Case files and batch files say
+        themselves what they are; all else follows from the files that are named here.
+        """
+        outdated = [self.batch_file(batch) for batch in self.batches if not self._is_current(batch)]
+        for file in (*outdated, paths.RESONANCE, paths.THRESHOLDS, paths.check_file("printed")):
+            if Path(file).exists():
+                _drop(file, "without a record of its parameters", only_tell)
+
+    def _is_current(self, batch: Batch) -> bool:
+        wanted = casefile.recipe(batches.attributes(self.study.parameters, batch))
+        return casefile.is_whole(Path(self.batch_file(batch)), wanted)
+
+
+def _drop(file: Path | str, why: str, only_tell: bool) -> None:
+    tell(f"{file}: {why}, to be made again")
+    if not only_tell:
+        Path(file).unlink()
 
 
 def load(config: Mapping[str, object], configfiles: Sequence[Path | str]) -> Plan:

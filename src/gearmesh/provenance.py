@@ -17,6 +17,7 @@ import gearmesh
 
 _PACKAGE = Path(gearmesh.__file__).parent
 _LIBRARIES = ("numba", "numpy")
+_MAY_HOLD_IMPORTS = (ast.stmt, ast.ExceptHandler, ast.match_case)
 
 
 def sources(*files: Path | str) -> list[Path]:
@@ -95,7 +96,8 @@ def _imported_names(node: ast.AST) -> Iterator[str]:
         yield node.module
         yield from (f"{node.module}.{alias.name}" for alias in node.names)
     for child in ast.iter_child_nodes(node):
-        yield from _imported_names(child)
+        if isinstance(child, _MAY_HOLD_IMPORTS):
+            yield from _imported_names(child)
 
 
 def _files(name: str) -> Iterator[Path]:

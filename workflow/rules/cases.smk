@@ -1,4 +1,6 @@
-# Integrate: a few jobs, each a batch of cases; every case has a declared file of its own.
+# Integrate: a few jobs, each a batch of cases. Thousands of declared files would cost more than
+# the cases: Snakemake knows of the batch files, and of case files only what it has to (see
+# `Plan.look`).
 COMPUTE = pipeline.script("compute_cases")
 
 for batch in PLAN.batches:
@@ -9,8 +11,8 @@ for batch in PLAN.batches:
         input:
             pipeline.sources(COMPUTE),
         output:
-            update(PLAN.case_files(batch.cases)),
-            batch=PLAN.batch_file(batch),
+            PLAN.batch_file(batch),
+            KNOWN.get(batch.index, []),
         log:
             f"results/logs/cases_{batch.index}.log",
         resources:
@@ -21,4 +23,4 @@ for batch in PLAN.batches:
             members=PLAN.members(batch),
             index=batch.index,
         shell:
-            "python workflow/scripts/compute_cases.py $STUDY {params.index} 2>&1 | tee {log}"
+            'python workflow/scripts/compute_cases.py "$STUDY" {params.index} 2>&1 | tee {log}'

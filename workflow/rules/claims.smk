@@ -15,7 +15,7 @@ rule printed:
         recipe=PLAN.recipe,
         claims=pipeline.claims_digest("printed"),
     shell:
-        "python workflow/scripts/check_printed.py $STUDY 2>&1 | tee {log}"
+        'python workflow/scripts/check_printed.py "$STUDY" 2>&1 | tee {log}'
 
 
 rule ledger:

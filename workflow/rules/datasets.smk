@@ -5,7 +5,7 @@ DATASETS = pipeline.script("make_datasets")
 rule datasets:
     input:
         sources=pipeline.sources(DATASETS),
-        batches=[PLAN.batch_file(batch) for batch in PLAN.batches],
+        batches=PLAN.batch_files,
     output:
         str(paths.RESONANCE),
         str(paths.BIFURCATION),
@@ -15,4 +15,4 @@ rule datasets:
         recipe=PLAN.recipe,
         grid=PLAN.grid,
     shell:
-        "python workflow/scripts/make_datasets.py $STUDY {input.batches} 2>&1 | tee {log}"
+        'python workflow/scripts/make_datasets.py "$STUDY" {input.batches} 2>&1 | tee {log}'

@@ -24,7 +24,7 @@ rule thresholds:
         recipe=PLAN.recipe,
         variants=PLAN.variants,
     shell:
-        "python workflow/scripts/locate_thresholds.py $STUDY 2>&1 | tee {log}"
+        'python workflow/scripts/locate_thresholds.py "$STUDY" 2>&1 | tee {log}'
 
 
 rule fig1:
@@ -68,7 +68,7 @@ for figure in paths.NOTEBOOK_NAMES:
             claims=pipeline.claims_digest(figure),
             ledger=str(paths.CLAIMS),
         shell:
-            "python workflow/scripts/run_notebook.py {input.notebook} {log} configuration=$STUDY"
+            'python workflow/scripts/run_notebook.py {input.notebook} {log} configuration="$STUDY"'
             " resonance={input.resonance} bifurcation={input.bifurcation}"
             " thresholds={input.thresholds} cases=results/cases ledger={params.ledger}"
             " figure={output.png} checks={output.checks}"

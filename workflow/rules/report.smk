@@ -22,4 +22,4 @@ rule report:
     params:
         study=PLAN.stated,
     shell:
-        "python workflow/scripts/build_report.py $STUDY 2>&1 | tee {log}"
+        'python workflow/scripts/build_report.py "$STUDY" 2>&1 | tee {log}'

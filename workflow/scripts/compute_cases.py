@@ -15,7 +15,7 @@ from gearmesh.batches import Batch
 from gearmesh.casefile import Record
 from gearmesh.configuration import Case, Study, load_study
 from gearmesh.errors import InputError
-from gearmesh.job import job, note, progress, tell
+from gearmesh.job import job, note, part, progress, tell
 
 CHUNK = 64
 """Cases that are integrated in one go: enough to fill the lanes, few enough to show progress."""
@@ -39,7 +39,8 @@ def compute(study: Study, batch: Batch) -> None:
         if time.monotonic() - told > TOLD_EVERY:
             tell(progress())
             told = time.monotonic()
-    batches.write_batch(output, attributes, batch, [records[case] for case in batch.cases])
+    with part("batch files"):
+        batches.write_batch(output, attributes, batch, [records[case] for case in batch.cases])
 
 
 def _kept(study: Study, cases: Sequence[Case]) -> dict[Case, Record]:
@@ -78,17 +79,20 @@ def has_file(study: Study, case: Case) -> bool:
 def _integrate(study: Study, cases: Sequence[Case]) -> list[Record]:
     """Integrate cases that are alike, and write their files."""
     # Imported here: a job that finds everything done need not load compiled code.
-    from gearmesh.integrator import simulate
+    with part("loading"):
+        from gearmesh.integrator import simulate
 
     parameters = study.parameters
     problems = [parameters.problem(case.variant, case.nu) for case in cases]
     samples = parameters.run.samples_per_period if cases[0].time_course else 0
-    responses = simulate(problems, parameters.solver.tolerance, samples)
+    with part("integration"):
+        responses = simulate(problems, parameters.solver.tolerance, samples)
     records = [casefile.record(response, parameters) for response in responses]
-    for case, record in zip(cases, records, strict=True):
-        if has_file(study, case):
-            path = paths.case_file(case.variant.name, case.nu)
-            casefile.write_case(path, casefile.attributes(parameters, case), record)
+    with part("case files"):
+        for case, record in zip(cases, records, strict=True):
+            if has_file(study, case):
+                path = paths.case_file(case.variant.name, case.nu)
+                casefile.write_case(path, casefile.attributes(parameters, case), record)
     failed = sum(response.status != "ok" for response in responses)
     note({"computed": len(cases), "failed": failed})
     return records

@@ -5,7 +5,7 @@ from collections import Counter
 
 from gearmesh import paths
 from gearmesh.claims import Entry, read_entries, verdict
-from gearmesh.job import job, write_text
+from gearmesh.job import job, note, write_text
 
 UNEXPECTED = 3
 """Exit status when a claim has another status than the ledger expects."""
@@ -27,11 +27,11 @@ def main() -> None:
     with job("ledger"):
         entries = read_entries(paths.LEDGER)
         outcome = verdict(entries)
+        note({"claims": str(outcome)})
         text = "\n".join([*lines(entries), str(outcome)]) + "\n"
         if outcome.unexpected:
             print(text, end="", file=sys.stderr)
             sys.exit(UNEXPECTED)
-        print(outcome)
         write_text(paths.VERDICT, text)
 
 
