@@ -8,7 +8,7 @@ import numpy as np
 
 from gearmesh.claims import REPRODUCED, Claim
 from gearmesh.identification import inference, prediction, sensitivity, synthetic
-from gearmesh.identification.focus import Cloud, prior_weights
+from gearmesh.identification.boxes import Box, prior_weights
 from gearmesh.identification.inference import ENOUGH, Fit, effective_size
 from gearmesh.identification.settings import KINDS, Settings
 from gearmesh.identification.store import Samples
@@ -56,7 +56,7 @@ class Family:
 
     @classmethod
     def of(
-        cls, samples: Samples, chain: Sequence[str], clouds: Sequence[Cloud], settings: Settings
+        cls, samples: Samples, chain: Sequence[str], boxes: Sequence[Box], settings: Settings
     ) -> "Family":
         """Put the designs of a chain together."""
         factors = settings.designs[chain[0]].vary
@@ -65,7 +65,7 @@ class Family:
         sizes = [part.design.size for part in parts]
         order = np.concatenate([np.flatnonzero(samples.design == name) for name in chain])
         prior = np.empty(order.size)
-        prior[np.argsort(np.argsort(order))] = prior_weights(places, sizes, list(clouds))
+        prior[np.argsort(np.argsort(order))] = prior_weights(places, sizes, boxes)
         return cls(samples.of(*chain), prior, factors)
 
 
@@ -77,7 +77,7 @@ class Analysis:
     ----------
     samples : Samples
         Of all designs.
-    clouds : dict of str to Cloud
+    boxes : dict of str to Box
         Of the focused designs.
     ledger : sequence of Claim
         The claims that may depend on the open parameters.
@@ -86,7 +86,7 @@ class Analysis:
     """
 
     samples: Samples
-    clouds: dict[str, Cloud]
+    boxes: dict[str, Box]
     ledger: Sequence[Claim]
     settings: Settings
 
@@ -105,8 +105,8 @@ class Analysis:
         chain = [first]
         while following := [n for n, d in self.settings.designs.items() if d.around == chain[-1]]:
             chain.append(following[0])
-        clouds = [self.clouds[name] for name in chain[1:]]
-        return Family.of(self.samples, chain, clouds, self.settings)
+        boxes = [self.boxes[name] for name in chain[1:]]
+        return Family.of(self.samples, chain, boxes, self.settings)
 
     def weights(self, samples: Samples) -> dict[str, np.ndarray]:
         """Return claim -> how well each sample fits it."""

@@ -22,9 +22,9 @@ def batch_file(design: str, index: int) -> Path:
     return FOLDER / design / f"batch-{index:03d}.nc"
 
 
-def places_file(design: str) -> Path:
-    """Return the file with the places of a focused design in the unit cube."""
-    return FOLDER / design / "places.nc"
+def box_file(design: str) -> Path:
+    """Return the file with the box that a focused design fills."""
+    return FOLDER / design / "box.nc"
 
 
 def batch_count(settings: Settings, design: str) -> int:
