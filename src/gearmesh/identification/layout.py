@@ -13,6 +13,9 @@ NOTEBOOK = paths.EXECUTED_NOTEBOOKS / "identification.ipynb"
 FIGURES = FOLDER / "figures"
 FIGURE_NAMES = ("regions", "supports", "sensitivity")
 
+REPORTED = {name: paths.REPORT.parent / name for name in ("regions", "sensitivity")}
+"""Figures that the report draws from the committed table, without suffix."""
+
 IDENTIFIED = paths.CONFIG / "identified.yaml"
 """The committed copy of `FOUND`, which the report reads."""
 
