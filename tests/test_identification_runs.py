@@ -114,6 +114,7 @@ def small(tmp_path_factory):
     for stated in settings["designs"].values():
         stated["points"] = 2
     settings["designs"]["survey"]["points"] = 8
+    del settings["designs"]["natural_nearer"]  # no more than `nearer` shows
     (project.folder / SETTINGS).write_text(yaml.safe_dump(settings), encoding="utf-8")
     project.finished = project.run("identify")
     return project

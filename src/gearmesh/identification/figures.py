@@ -65,7 +65,8 @@ def draw_regions(
     for axes, factor in zip(grid, factors, strict=True):
         _draw_factor(axes, factor, found, ranges[factor])
         if factor in stated:
-            axes.axvline(ranges[factor].unit(stated[factor]), color=palette.RED, lw=1.1)
+            place = ranges[factor].unit(stated[factor])
+            axes.axvline(place, color=palette.RED, lw=1.1, clip_on=False)
     handles = [
         Patch(**_DENSITY, label="density"),
         Line2D([], [], color=palette.GREY, lw=0.6, ls=(0, (4, 3)), label="without the claims"),
@@ -78,17 +79,17 @@ def draw_regions(
 
 
 def _draw_factor(axes: Axes, factor: str, found: Mapping[str, Any], bounds: Range) -> None:
-    for row, reading in enumerate(("natural", "plausible")):
-        region = found[reading]["factors"].get(factor)
-        if region is None:
-            continue
+    readings = {"natural": "natural", "plausible": "all"}
+    varied = [reading for reading in readings if factor in found[reading]["factors"]]
+    for row, reading in enumerate(varied):
+        region = found[reading]["factors"][factor]
         for ends, alpha in ((region["region"], 0.25), (region["half"], 0.75)):
             low, high = (bounds.unit(end) for end in ends)
             axes.barh(row, high - low, left=low, height=0.16, color=palette.BLUE, alpha=alpha, lw=0)
         _draw_shape(axes, np.array(region["shape"]), row + 0.12, 0.66)
     axes.set_xlim(0.0, 1.0)
-    axes.set_ylim(-0.2, 1.9)
-    axes.set_yticks([0, 1], ["natural", "all"])
+    axes.set_ylim(-0.2, len(varied) - 0.1)
+    axes.set_yticks(range(len(varied)), [readings[reading] for reading in varied])
     axes.tick_params(axis="y", length=0)
     ticks = [tick for tick in _TICKS[factor] if bounds.low <= tick <= bounds.high]
     labels = [f"{tick:g}".replace("-", "−") for tick in ticks]
