@@ -133,7 +133,7 @@ def parameter_rows(
             within(natural[name]["region"], bounds)
             if name in natural
             else _number(bounds.least or 0.0),
-            _number(float(values[name])),
+            _number(float(values[name]), 4),
             _stretch(found["beside"].get(name), float(values[name])),
         )
 
@@ -172,8 +172,8 @@ def _stretch(beside: Mapping[str, Any] | None, value: float) -> str:
     return _between(low, high) + (f" ({', '.join(sorted(fails))})" if fails else "")
 
 
-def _number(value: float) -> str:
-    return number(float(f"{value:.3g}"))
+def _number(value: float, digits: int = 3) -> str:
+    return number(float(f"{value:.{digits}g}"))
 
 
 def claim_rows(claims: Mapping[str, Any], ledger: Sequence[Claim]) -> list[ClaimRow]:
