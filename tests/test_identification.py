@@ -20,12 +20,12 @@ from gearmesh.identification import (
     inference,
     layout,
     prediction,
+    presentation,
     sensitivity,
     synthetic,
     table,
     wording,
 )
-from gearmesh.identification.presentation import OPEN
 from gearmesh.identification.settings import FACTORS, KINDS, Range, load_settings
 from gearmesh.identification.wording import Statement
 
@@ -378,6 +378,31 @@ def test_the_committed_findings_are_those_of_the_ledger(root):
             assert bounds.low <= low < high <= bounds.high
 
 
+@pytest.mark.parametrize(
+    ("region", "said"),
+    [
+        ((2.0, 10.0), "2 to 10"),
+        ((1.1, 10.0), "up to 10"),  # no end of a region of its own: the range has its there
+        ((2.0, 98.0), "2 or more"),
+        ((1.1, 98.0), "any"),
+    ],
+)
+def test_an_interval_names_the_ends_that_the_claims_set(region, said):
+    bounds = Range(low=1.0, high=100.0, scale="log", reason="a test")
+    assert presentation.within(region, bounds) == said
+
+
+def test_run_out_is_told_by_what_it_costs():
+    found = {
+        "with friction": {"F1": 0.0, "F2": 0.5, "F3": 3.0, "F4": 0.0},
+        "without friction": {"F1": 2.0, "F2": 3.0, "F3": 0.0, "F4": 0.0},
+    }
+    costs = presentation.run_out_costs(found, ["F1", "F2", "F3"])
+    assert costs == {
+        "lost": ["F1"], "alone_lost": ["F3"], "alone_least": 2.0, "alone_fragile": ["F1"]
+    }  # fmt: skip
+
+
 REASONS = {
     "backlash": "backlash s",
     "damping_length": "damping length ℓ",
@@ -423,7 +448,7 @@ def test_the_note_states_the_ranges_that_were_identified(root, factor):
 
 def test_the_study_lies_where_the_evidence_wants_it(root, parameters):
     found = table.read(root / layout.IDENTIFIED)
-    space = load_settings(root / SETTINGS)
+    space, free = load_settings(root / SETTINGS), presentation.OPEN
     for reading in ("plausible", "natural"):
         for name, region in found["regions"][reading]["factors"].items():
             if name == "kind":
@@ -431,4 +456,4 @@ def test_the_study_lies_where_the_evidence_wants_it(root, parameters):
             value = space.ranges[name].unit(design.stated(parameters)[name])
             low, high = (space.ranges[name].unit(end) for end in region["region"])
             # Ends that close to those of the range are none of the claims' doing.
-            assert (low < OPEN or low <= value) and (high > 1 - OPEN or value <= high), name
+            assert (low < free or low <= value) and (high > 1 - free or value <= high), name

@@ -90,13 +90,13 @@ def section(
                 for name, region in factors.items()
                 if name != "kind" and within(region["region"], settings.ranges[name]) == ANY
             ],
-            run_out=_run_out(found["run-out"], expected),
+            run_out=run_out_costs(found["run-out"], expected),
             figures=figures,
         )
     )
 
 
-def _run_out(found: Mapping[str, Any], expected: Sequence[str]) -> dict[str, Any]:
+def run_out_costs(found: Mapping[str, Any], expected: Sequence[str]) -> dict[str, Any]:
     """Return which claims run-out costs, with friction and without it."""
     bears, alone = (
         {name: most for name, most in found[words].items() if name in expected}
