@@ -103,7 +103,7 @@ def run_out_costs(found: Mapping[str, Any], expected: Sequence[str]) -> dict[str
         for words in ("with friction", "without friction")
     )
     most = {name: up_to for name, up_to in alone.items() if up_to > 0}
-    least = min(most.values())
+    least = min(most.values(), default=0.0)
     return {
         "lost": [name for name, up_to in bears.items() if up_to == 0],
         "alone_lost": [name for name, up_to in alone.items() if up_to == 0],
