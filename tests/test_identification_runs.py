@@ -114,6 +114,9 @@ def small(tmp_path_factory):
     for stated in settings["designs"].values():
         stated["points"] = 2
     settings["designs"]["survey"]["points"] = 8
+    del settings["designs"]["natural_nearer"]  # no more than `nearer` shows
+    # One design on the full model is enough, and dear enough.
+    settings["designs"]["run_out_alone"]["vary"] = ["eccentricity_angle"]
     (project.folder / SETTINGS).write_text(yaml.safe_dump(settings), encoding="utf-8")
     project.finished = project.run("identify")
     return project

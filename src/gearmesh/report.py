@@ -24,7 +24,10 @@ from gearmesh.claims import Entry, load_ledger, read_entries, verdict
 from gearmesh.configuration import Study
 from gearmesh.datasets import open_dataset
 from gearmesh.equations import EQUATIONS
+from gearmesh.figures import canvas
 from gearmesh.identification import layout, table
+from gearmesh.identification.design import stated
+from gearmesh.identification.figures import draw_regions, draw_sensitivity
 from gearmesh.identification.presentation import section
 from gearmesh.identification.settings import load_settings
 from gearmesh.parameters import DERIVATIONS, rows
@@ -75,15 +78,24 @@ def write_report(study: Study) -> None:
     captions = {
         name: (CAPTIONS / f"{name}.rst").read_text(encoding="utf-8") for name in paths.FIGURE_NAMES
     }
-    identified = section(
-        table.read(),
-        load_ledger(paths.CLAIMS),
-        load_settings(layout.SETTINGS),
-        study.parameters,
-    )
     resonance = open_dataset(paths.RESONANCE)
-    page = render(study, read_entries(paths.LEDGER), resonance, captions, identified)
+    page = render(study, read_entries(paths.LEDGER), resonance, captions, _identified(study))
     _write(paths.REPORT, page)
+
+
+def _identified(study: Study) -> str:
+    """Draw what the claims tell about the open parameters, and return it as HTML."""
+    found, settings = table.read(), load_settings(layout.SETTINGS)
+    regions = draw_regions(found["regions"], settings.ranges, stated(study.parameters))
+    canvas.save(regions, layout.REPORTED["regions"])
+    canvas.save(draw_sensitivity(found["sensitivity"]), layout.REPORTED["sensitivity"])
+    return section(
+        found,
+        load_ledger(paths.CLAIMS),
+        settings,
+        study.parameters,
+        {name: _relative(path) for name, path in layout.REPORTED.items()},
+    )
 
 
 def render(

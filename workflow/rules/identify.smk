@@ -1,5 +1,5 @@
 # Infer what the paper does not print: samples of the open parameters, in batches; focused designs
-# surround the best of what came before. Nothing here is part of the default target, which reads
+# fill a box around the best of what came before. Nothing here is part of the default target, which reads
 # the committed table config/identified.yaml.
 from gearmesh import provenance
 from gearmesh.identification import layout
@@ -8,7 +8,7 @@ from gearmesh.identification.settings import load_settings
 
 DESIGNS = load_settings(layout.SETTINGS)
 MEASURE = pipeline.script("identify_batch")
-PLACES = pipeline.script("identify_places")
+BOX = pipeline.script("identify_box")
 GATHER = pipeline.script("identify_dataset")
 INFER = pipeline.script("identify_parameters")
 RUN = pipeline.script("run_notebook")
@@ -21,7 +21,7 @@ for name, stated in DESIGNS.designs.items():
             f"identify_{name}"
         input:
             pipeline.sources(MEASURE),
-            layout.places_file(name) if stated.around else [],
+            layout.box_file(name) if stated.around else [],
         output:
             layout.FOLDER / name / r"batch-{index,\d+}.nc",
         log:
@@ -36,28 +36,28 @@ for name, stated in DESIGNS.designs.items():
             stated=DESIGNS.sampling(name),
             design=name,
         shell:
-            "python workflow/scripts/identify_batch.py {params.settings} $STUDY {params.design}"
+            'python workflow/scripts/identify_batch.py {params.settings} "$STUDY" {params.design}'
             " {wildcards.index} {output} 2>&1 | tee {log}"
 
     if stated.around:
 
         rule:
             name:
-                f"identify_{name}_places"
+                f"identify_{name}_box"
             input:
-                pipeline.sources(PLACES),
+                pipeline.sources(BOX),
                 paths.CLAIMS,
                 batches=layout.batch_files(DESIGNS, *layout.family(DESIGNS, stated.around)),
             output:
-                layout.places_file(name),
+                layout.box_file(name),
             log:
-                f"results/logs/identify_{name}_places.log",
+                f"results/logs/identify_{name}_box.log",
             params:
                 settings=str(layout.SETTINGS),
                 stated=DESIGNS.sampling(name),
                 design=name,
             shell:
-                "python workflow/scripts/identify_places.py {params.settings} {params.design}"
+                "python workflow/scripts/identify_box.py {params.settings} {params.design}"
                 " {input.batches} 2>&1 | tee {log}"
 
 
@@ -78,7 +78,7 @@ rule identified:
         pipeline.sources(INFER),
         paths.CLAIMS,
         layout.DATASET,
-        [layout.places_file(name) for name, stated in DESIGNS.designs.items() if stated.around],
+        [layout.box_file(name) for name, stated in DESIGNS.designs.items() if stated.around],
         settings=layout.SETTINGS,
     output:
         layout.FOUND,
@@ -104,7 +104,7 @@ rule identification_notebook:
         recipe=PLAN.recipe,
     shell:
         "python workflow/scripts/run_notebook.py notebooks/identification.ipynb {log}"
-        " configuration=$STUDY table={input.table} samples={input.samples}"
+        ' configuration="$STUDY" table={input.table} samples={input.samples}'
         " ledger={input.ledger} settings={input.settings}"
 
 

@@ -17,6 +17,7 @@ rule report:
     output:
         report(paths.REPORT, caption="../report/page.rst", category="Report"),
         [paths.notebook_page(name) for name in paths.NOTEBOOK_NAMES],
+        [f"{path}{suffix}" for path in layout.REPORTED.values() for suffix in (".png", ".svg")],
     log:
         "results/logs/report.log",
     params:

@@ -5,7 +5,7 @@ import warnings
 from pathlib import Path
 
 from gearmesh.configuration import load_study
-from gearmesh.identification import layout, store
+from gearmesh.identification import boxes, layout, store
 from gearmesh.identification.design import unit_points
 from gearmesh.identification.settings import load_settings
 from gearmesh.identification.survey import compute
@@ -26,10 +26,9 @@ def main() -> None:
     with job("identification"):
         settings = load_settings(options.settings)
         design = settings.designs[options.design]
-        if design.around is None:
-            places = unit_points(design)
-        else:
-            places = store.read_places(layout.places_file(options.design))
+        places = unit_points(design)
+        if design.around:
+            places = boxes.read_box(layout.box_file(options.design)).fill(places)
         study = load_study(options.config).parameters
         found = compute(settings, study, options.design, options.index, places)
         store.write(options.output, found, f"claims on samples of the design {options.design}")

@@ -5,7 +5,7 @@ from pathlib import Path
 
 from gearmesh import paths
 from gearmesh.claims import load_ledger
-from gearmesh.identification import focus, layout, store, table
+from gearmesh.identification import boxes, layout, store, table
 from gearmesh.identification.findings import Analysis, findings
 from gearmesh.identification.settings import load_settings
 from gearmesh.identification.survey import tested_claims
@@ -22,7 +22,7 @@ def main() -> None:
         focused = [name for name, design in settings.designs.items() if design.around]
         analysis = Analysis(
             samples=store.read(layout.DATASET),
-            clouds={name: focus.read_cloud(layout.places_file(name)) for name in focused},
+            boxes={name: boxes.read_box(layout.box_file(name)) for name in focused},
             ledger=[c for c in load_ledger(paths.CLAIMS) if c.id in tested_claims()],
             settings=settings,
         )

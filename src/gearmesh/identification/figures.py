@@ -30,6 +30,8 @@ SYMBOLS = {
     "kind": "run",
 }
 
+_DENSITY = {"color": palette.PALE, "alpha": 0.6, "lw": 0}
+
 _TICKS = {
     "backlash": (2, 4, 8, 15),
     "damping_length": (0.1, 0.25, 0.5, 1, 2),
@@ -58,36 +60,49 @@ def draw_regions(
         Values of the study, shown as a line.
     """
     factors = [name for name in found["plausible"]["factors"] if name != "kind"]
-    figure = Figure(figsize=(WIDTH, 0.62 * len(factors) + 0.7), layout="constrained")
+    figure = Figure(figsize=(WIDTH, 0.78 * len(factors) + 0.7), layout="constrained")
     grid = figure.subplots(len(factors), 1)
     for axes, factor in zip(grid, factors, strict=True):
         _draw_factor(axes, factor, found, ranges[factor])
         if factor in stated:
-            axes.axvline(ranges[factor].unit(stated[factor]), color=palette.RED, lw=1.1)
+            place = ranges[factor].unit(stated[factor])
+            axes.axvline(place, color=palette.RED, lw=1.1, clip_on=False)
     handles = [
+        Patch(**_DENSITY, label="density"),
+        Line2D([], [], color=palette.GREY, lw=0.6, ls=(0, (4, 3)), label="without the claims"),
         Patch(color=palette.BLUE, alpha=0.25, lw=0, label="95 %"),
         Patch(color=palette.BLUE, alpha=0.75, lw=0, label="50 %"),
         Line2D([], [], color=palette.RED, lw=1.1, label="this study"),
     ]
-    figure.legend(handles=handles, loc="outside lower center", ncols=3)
+    figure.legend(handles=handles, loc="outside lower center", ncols=5)
     return figure
 
 
 def _draw_factor(axes: Axes, factor: str, found: Mapping[str, Any], bounds: Range) -> None:
-    for row, reading in enumerate(("natural", "plausible")):
-        region = found[reading]["factors"].get(factor)
-        if region is None:
-            continue
+    readings = {"natural": "natural", "plausible": "all"}
+    varied = [reading for reading in readings if factor in found[reading]["factors"]]
+    for row, reading in enumerate(varied):
+        region = found[reading]["factors"][factor]
         for ends, alpha in ((region["region"], 0.25), (region["half"], 0.75)):
             low, high = (bounds.unit(end) for end in ends)
-            axes.barh(row, high - low, left=low, height=0.56, color=palette.BLUE, alpha=alpha, lw=0)
+            axes.barh(row, high - low, left=low, height=0.16, color=palette.BLUE, alpha=alpha, lw=0)
+        _draw_shape(axes, np.array(region["shape"]), row + 0.12, 0.66)
     axes.set_xlim(0.0, 1.0)
-    axes.set_ylim(-0.6, 1.6)
-    axes.set_yticks([0, 1], ["natural", "all"])
+    axes.set_ylim(-0.2, len(varied) - 0.1)
+    axes.set_yticks(range(len(varied)), [readings[reading] for reading in varied])
     axes.tick_params(axis="y", length=0)
     ticks = [tick for tick in _TICKS[factor] if bounds.low <= tick <= bounds.high]
-    axes.set_xticks([bounds.unit(tick) for tick in ticks], [f"{tick:g}" for tick in ticks])
+    labels = [f"{tick:g}".replace("-", "−") for tick in ticks]
+    axes.set_xticks([bounds.unit(tick) for tick in ticks], labels)
     axes.set_title(SYMBOLS[factor], pad=2)
+
+
+def _draw_shape(axes: Axes, shape: np.ndarray, base: float, height: float) -> None:
+    """Draw how densely parts of the range are filled, and how densely without evidence."""
+    scale = height / shape.max()
+    edges = np.linspace(0.0, 1.0, shape.size + 1)
+    axes.stairs(base + scale * shape, edges, baseline=base, fill=True, **_DENSITY)
+    axes.plot([0.0, 1.0], [base + scale] * 2, color=palette.GREY, lw=0.6, ls=(0, (4, 3)))
 
 
 @styled

@@ -8,7 +8,7 @@ import numpy as np
 
 from gearmesh.claims import REPRODUCED, Claim
 from gearmesh.identification import inference, prediction, sensitivity, synthetic
-from gearmesh.identification.focus import Cloud, prior_weights
+from gearmesh.identification.boxes import Box, prior_weights
 from gearmesh.identification.inference import ENOUGH, Fit, effective_size
 from gearmesh.identification.settings import KINDS, Settings
 from gearmesh.identification.store import Samples
@@ -20,7 +20,8 @@ from gearmesh.identification.wording import (
 SURVEY, NATURAL, TRUTH = "survey", "natural", "truth"
 """Even designs: the plausible space, the natural reading, synthetic papers."""
 
-BESIDE, RUN_OUT = "beside", "run_out"
+BESIDE = "beside"
+RUN_OUT = {"with friction": "run_out", "without friction": "run_out_alone"}
 """Designs beside the study: one parameter at a time, and run-out."""
 
 CUTS = 50
@@ -56,7 +57,7 @@ class Family:
 
     @classmethod
     def of(
-        cls, samples: Samples, chain: Sequence[str], clouds: Sequence[Cloud], settings: Settings
+        cls, samples: Samples, chain: Sequence[str], boxes: Sequence[Box], settings: Settings
     ) -> "Family":
         """Put the designs of a chain together."""
         factors = settings.designs[chain[0]].vary
@@ -65,7 +66,7 @@ class Family:
         sizes = [part.design.size for part in parts]
         order = np.concatenate([np.flatnonzero(samples.design == name) for name in chain])
         prior = np.empty(order.size)
-        prior[np.argsort(np.argsort(order))] = prior_weights(places, sizes, list(clouds))
+        prior[np.argsort(np.argsort(order))] = prior_weights(places, sizes, boxes)
         return cls(samples.of(*chain), prior, factors)
 
 
@@ -77,7 +78,7 @@ class Analysis:
     ----------
     samples : Samples
         Of all designs.
-    clouds : dict of str to Cloud
+    boxes : dict of str to Box
         Of the focused designs.
     ledger : sequence of Claim
         The claims that may depend on the open parameters.
@@ -86,7 +87,7 @@ class Analysis:
     """
 
     samples: Samples
-    clouds: dict[str, Cloud]
+    boxes: dict[str, Box]
     ledger: Sequence[Claim]
     settings: Settings
 
@@ -105,8 +106,8 @@ class Analysis:
         chain = [first]
         while following := [n for n, d in self.settings.designs.items() if d.around == chain[-1]]:
             chain.append(following[0])
-        clouds = [self.clouds[name] for name in chain[1:]]
-        return Family.of(self.samples, chain, clouds, self.settings)
+        boxes = [self.boxes[name] for name in chain[1:]]
+        return Family.of(self.samples, chain, boxes, self.settings)
 
     def weights(self, samples: Samples) -> dict[str, np.ndarray]:
         """Return claim -> how well each sample fits it."""
@@ -117,20 +118,22 @@ class Analysis:
         return {name: weight > 0 for name, weight in self.weights(samples).items()}
 
     def evidence(self, family: Family) -> list[str]:
-        """Return the largest set of claims that enough samples meet together."""
-        held = np.array(list(self.held(family.samples).values()))
-        patterns = np.unique(held.T, axis=0)
-        sizes = []
-        for pattern in patterns:
-            meets = np.all(held[pattern], axis=0)
-            sizes.append(effective_size(family.prior * meets))
-        enough = np.array(sizes) >= ENOUGH
-        best = max(
-            np.flatnonzero(enough), key=lambda i: (patterns[i].sum(), sizes[i]), default=None
-        )
-        if best is None:
-            return self.claims
-        return [name for name, kept in zip(self.claims, patterns[best], strict=True) if kept]
+        """Return the largest set of claims that enough samples fit together.
+
+        Of sets of the same size it is the one that fits most of the prior.
+        """
+        weight = np.array(list(self.weights(family.samples).values()))
+        patterns = np.unique(weight.T > 0, axis=0)
+        counts = patterns.sum(axis=1)
+        for count in np.unique(counts)[::-1]:
+            sizes = {
+                tuple(pattern): effective_size(family.prior * np.prod(weight[pattern], axis=0))
+                for pattern in patterns[counts == count]
+            }
+            best = max(sizes, key=sizes.get)
+            if sizes[best] >= ENOUGH:
+                return [name for name, kept in zip(self.claims, best, strict=True) if kept]
+        return self.claims
 
     def fit(self, family: Family, claims: Sequence[str]) -> Fit:
         """Fit some claims."""
@@ -145,6 +148,7 @@ def findings(analysis: Analysis) -> dict[str, object]:
         "samples": {
             name: int(np.sum(analysis.samples.design == name)) for name in analysis.settings.designs
         },
+        "boxes": {name: _rounded(box.volume) for name, box in analysis.boxes.items()},
         "claims": claims_table(analysis, survey, natural),
         "joint": {
             "plausible": _joint(analysis, survey),
@@ -158,7 +162,7 @@ def findings(analysis: Analysis) -> dict[str, object]:
         "prediction": predictions(analysis, survey),
         "recovery": recoveries(analysis, survey),
         "beside": beside(analysis),
-        "run-out": run_out(analysis),
+        "run-out": {words: run_out(analysis, name) for words, name in RUN_OUT.items()},
     }
 
 
@@ -185,14 +189,23 @@ def claims_table(analysis: Analysis, survey: Family, natural: Family) -> dict[st
 
 def _joint(analysis: Analysis, family: Family) -> dict[str, object]:
     held = analysis.held(family.samples)
-    every = np.all(list(held.values()), axis=0)
-    value, error = inference.share(every, family.prior)
     return {
-        "all": {"share": _rounded(value), "error": _rounded(error), "samples": int(every.sum())},
+        "all": _share_of(np.all(list(held.values()), axis=0), family.prior),
         "largest": [
-            {"missing": list(missing), "share": _rounded(share)}
-            for missing, share in inference.joint_sets(held, family.prior)
+            {"missing": list(missing)} | _share_of(meets, family.prior)
+            for missing, meets in inference.joint_sets(held, family.prior)
         ],
+    }
+
+
+def _share_of(meets: np.ndarray, prior: np.ndarray) -> dict[str, object]:
+    """Return how much of the prior some samples are, and how many they are, also in effect."""
+    value, error = inference.share(meets, prior)
+    return {
+        "share": _rounded(value),
+        "error": _rounded(error),
+        "samples": int(meets.sum()),
+        "in effect": _rounded(effective_size(prior * meets)),
     }
 
 
@@ -219,6 +232,7 @@ def regions(analysis: Analysis, family: Family) -> dict[str, object]:
             "half": [_rounded(bounds.value(place)) for place in inner],
             "met": [_rounded(bounds.value(float(end))) for end in (meets.min(), meets.max())],
             "of the prior": _rounded(high - low),
+            "shape": [_rounded(part) for part in inference.shape(places, fit.weights)],
         }
     return {
         "without": [name for name in analysis.claims if name not in evidence],
@@ -359,9 +373,9 @@ def _stretch(values, order, held, expected) -> dict[str, object]:
     return {"to": last, "then fail": []}
 
 
-def run_out(analysis: Analysis) -> dict[str, object]:
+def run_out(analysis: Analysis, design: str) -> dict[str, object]:
     """Return for each claim up to which eccentricity, the larger one in y_st, it always holds."""
-    samples = analysis.samples.of(RUN_OUT)
+    samples = analysis.samples.of(design)
     larger = np.maximum(samples.values["eccentricity_3"], samples.values["eccentricity_2"])
     found = {}
     for name, held in analysis.held(samples).items():

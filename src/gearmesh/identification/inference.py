@@ -25,6 +25,9 @@ ENOUGH = 40
 LEVEL = 0.95
 """Probability of the regions."""
 
+PARTS = 12
+"""Equal parts of a factor's range that tell where in it the evidence lies."""
+
 _GRID = 401
 
 
@@ -105,6 +108,12 @@ def region(places: np.ndarray, weights: np.ndarray, level: float = LEVEL) -> tup
     return float(low), float(high)
 
 
+def shape(places: np.ndarray, weights: np.ndarray, parts: int = PARTS) -> np.ndarray:
+    """Return how densely the equal parts of a factor's range are filled, 1 where as the prior."""
+    filled, _ = np.histogram(places, parts, (0.0, 1.0), weights=weights)
+    return parts * filled / weights.sum()
+
+
 def _smoothed(places: np.ndarray, weights: np.ndarray, grid: np.ndarray) -> np.ndarray:
     """Return the smoothed distribution function; the kernel is folded back at both ends."""
     spread = np.sqrt(weights @ (places - weights @ places) ** 2)
@@ -131,27 +140,26 @@ def joint_level(factors: int, level: float = LEVEL) -> float:
 
 def joint_sets(
     held: Mapping[str, np.ndarray], prior: np.ndarray, most: int = 5
-) -> list[tuple[tuple[str, ...], float]]:
+) -> list[tuple[tuple[str, ...], np.ndarray]]:
     """Return the largest sets of claims that hold together somewhere.
 
     Returns
     -------
-    list of (names of the claims that do not hold, share of the prior)
-        Sets that no other set found contains, by their size and then by their share, `most` at
-        the most.
+    list of (names of the claims that do not hold, which samples meet all others)
+        Sets that no other set found contains, by their size and then by their share of the
+        prior, `most` at the most.
     """
     names = list(held)
     patterns, which = np.unique(np.array(list(held.values())).T, axis=0, return_inverse=True)
-    shares = np.bincount(which.ravel(), prior, len(patterns)) / prior.sum()
+    which = which.ravel()
+    shares = np.bincount(which, prior, len(patterns))
     largest = [
         i
         for i, pattern in enumerate(patterns)
         if not any(np.all(other >= pattern) and other.sum() > pattern.sum() for other in patterns)
     ]
     largest.sort(key=lambda i: (-patterns[i].sum(), -shares[i]))
-    return [
-        (tuple(np.array(names)[~patterns[i]].tolist()), float(shares[i])) for i in largest[:most]
-    ]
+    return [(tuple(np.array(names)[~patterns[i]].tolist()), which == i) for i in largest[:most]]
 
 
 def predictive(held: np.ndarray, found: Fit) -> float:

@@ -13,6 +13,9 @@ NOTEBOOK = paths.EXECUTED_NOTEBOOKS / "identification.ipynb"
 FIGURES = FOLDER / "figures"
 FIGURE_NAMES = ("regions", "supports", "sensitivity")
 
+REPORTED = {name: paths.REPORT.parent / name for name in ("regions", "sensitivity")}
+"""Figures that the report draws from the committed table, without suffix."""
+
 IDENTIFIED = paths.CONFIG / "identified.yaml"
 """The committed copy of `FOUND`, which the report reads."""
 
@@ -22,9 +25,9 @@ def batch_file(design: str, index: int) -> Path:
     return FOLDER / design / f"batch-{index:03d}.nc"
 
 
-def places_file(design: str) -> Path:
-    """Return the file with the places of a focused design in the unit cube."""
-    return FOLDER / design / "places.nc"
+def box_file(design: str) -> Path:
+    """Return the file with the box that a focused design fills."""
+    return FOLDER / design / "box.nc"
 
 
 def batch_count(settings: Settings, design: str) -> int:

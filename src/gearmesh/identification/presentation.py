@@ -6,9 +6,16 @@ from typing import Any
 
 from gearmesh.claims import REPRODUCED, Claim
 from gearmesh.identification.design import Sample, stated
-from gearmesh.identification.settings import FACTORS, Settings
+from gearmesh.identification.settings import FACTORS, Range, Settings
 from gearmesh.parameters import Parameters
 from gearmesh.presentation import environment, number
+
+ANY = "any"
+"""What is said of a parameter that the claims say nothing about."""
+
+OPEN = 0.05
+"""A region that comes closer than this to an end of the range, as a share of it, is not bounded
+there: if the claims said nothing, it would end half of this away."""
 
 NARROW = 0.6
 """A region shorter than this share of the plausible range says something about a parameter."""
@@ -18,6 +25,7 @@ NARROW = 0.6
 class ParameterRow:
     """Where one parameter may lie, as text."""
 
+    name: str
     symbol: str
     prior: str
     region: str
@@ -39,7 +47,11 @@ class ClaimRow:
 
 
 def section(
-    found: Mapping[str, Any], ledger: Sequence[Claim], settings: Settings, study: Parameters
+    found: Mapping[str, Any],
+    ledger: Sequence[Claim],
+    settings: Settings,
+    study: Parameters,
+    figures: Mapping[str, str] | None = None,
 ) -> str:
     """Return the findings as HTML.
 
@@ -53,10 +65,12 @@ def section(
         Ranges of the plausible space.
     study : Parameters
         The values of the study, shown beside the regions.
+    figures : mapping of str to str, optional
+        Places of the figures ``regions`` and ``sensitivity``, without suffix; the notebook draws
+        its own.
     """
     expected = [claim.id for claim in ledger if claim.expected_status == REPRODUCED]
-    bears = {name: most for name, most in found["run-out"].items() if name in expected}
-    least = min(bears.values())
+    factors = found["regions"]["plausible"]["factors"]
     return (
         environment()
         .get_template("identification.html.j2")
@@ -65,17 +79,39 @@ def section(
             regions=found["regions"],
             parameters=list(parameter_rows(found, settings, stated(study))),
             claims=claim_rows(found["claims"], ledger),
-            pinned=[FACTORS[name] for name in _pinned(found["regions"]["plausible"])],
-            least_run_out=least,
-            fragile=[name for name, most in bears.items() if most == least],
+            error=max(entry["error"] for entry in found["claims"].values()),
+            pinned=[
+                FACTORS[name]
+                for name, region in factors.items()
+                if region.get("of the prior", 1.0) < NARROW
+            ],
+            free=[
+                FACTORS[name]
+                for name, region in factors.items()
+                if name != "kind" and within(region["region"], settings.ranges[name]) == ANY
+            ],
+            run_out=run_out_costs(found["run-out"], expected),
+            figures=figures,
         )
     )
 
 
-def _pinned(regions: Mapping[str, Any]) -> list[str]:
-    """Return the parameters that the claims pin down."""
-    factors = regions["factors"].items()
-    return [name for name, found in factors if found.get("of the prior", 1.0) < NARROW]
+def run_out_costs(found: Mapping[str, Any], expected: Sequence[str]) -> dict[str, Any]:
+    """Return which claims run-out costs, with friction and without it."""
+    bears, alone = (
+        {name: most for name, most in found[words].items() if name in expected}
+        for words in ("with friction", "without friction")
+    )
+    most = {name: up_to for name, up_to in alone.items() if up_to > 0}
+    least = min(most.values(), default=0.0)
+    return {
+        "lost": [name for name, up_to in bears.items() if up_to == 0],
+        "alone_lost": [name for name, up_to in alone.items() if up_to == 0],
+        "alone_least": least,
+        "alone_fragile": [
+            name for name, up_to in most.items() if up_to == least < max(most.values())
+        ],
+    }
 
 
 def parameter_rows(
@@ -86,15 +122,18 @@ def parameter_rows(
     for name, region in found["regions"]["plausible"]["factors"].items():
         if name == "kind":
             likely = ", ".join(f"{kind} {round(100 * p)} %" for kind, p in region.items())
-            yield ParameterRow(FACTORS[name], "any", likely, "separate", str(values[name]), "")
+            yield ParameterRow("", FACTORS[name], ANY, likely, "separate", str(values[name]), "")
             continue
         bounds = settings.ranges[name]
         yield ParameterRow(
+            name.replace("_", " "),
             FACTORS[name],
             _interval([bounds.low, bounds.high]),
-            _interval(region["region"]),
-            _interval(natural[name]["region"]) if name in natural else _number(bounds.least or 0.0),
-            _number(float(values[name])),
+            within(region["region"], bounds),
+            within(natural[name]["region"], bounds)
+            if name in natural
+            else _number(bounds.least or 0.0),
+            _number(float(values[name]), 4),
             _stretch(found["beside"].get(name), float(values[name])),
         )
 
@@ -104,17 +143,37 @@ def _interval(ends: Sequence[float]) -> str:
     return f"{low} to {high}"
 
 
+def within(region: Sequence[float], bounds: Range) -> str:
+    """Say where a parameter lies; an end of the plausible range is none of the claims' doing."""
+    low, high = region
+    return _between(
+        low if bounds.unit(low) > OPEN else None, high if bounds.unit(high) < 1.0 - OPEN else None
+    )
+
+
+def _between(low: float | None, high: float | None) -> str:
+    """Say what lies between two ends, where there are any."""
+    if low is not None and high is not None:
+        return _interval([low, high])
+    if low is not None:
+        return f"{_number(low)} or more"
+    return ANY if high is None else f"up to {_number(high)}"
+
+
 def _stretch(beside: Mapping[str, Any] | None, value: float) -> str:
     """Say how far a parameter may be moved alone, and what fails then."""
     if beside is None:
         return ""
-    ends = [value if beside[side]["to"] is None else beside[side]["to"] for side in ("down", "up")]
+    low, high = (
+        (value if side["to"] is None else side["to"]) if side["then fail"] else None
+        for side in (beside["down"], beside["up"])
+    )
     fails = {claim for side in beside.values() for claim in side["then fail"]}
-    return _interval(ends) + (f" ({', '.join(sorted(fails))})" if fails else "")
+    return _between(low, high) + (f" ({', '.join(sorted(fails))})" if fails else "")
 
 
-def _number(value: float) -> str:
-    return number(float(f"{value:.3g}"))
+def _number(value: float, digits: int = 3) -> str:
+    return number(float(f"{value:.{digits}g}"))
 
 
 def claim_rows(claims: Mapping[str, Any], ledger: Sequence[Claim]) -> list[ClaimRow]:

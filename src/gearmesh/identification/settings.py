@@ -65,11 +65,11 @@ class Design(Section):
     """A set of samples.
 
     `fixed` factors keep one value, all others that of the study. `around` names the design whose
-    best samples this one surrounds, in place of filling the whole space.
+    best samples span the box that this one fills, in place of the whole space.
     """
 
     purpose: str = Field(min_length=1)
-    points: int = Field(gt=0, le=2**20)
+    points: int = Field(ge=2, le=2**20)
     points_per_job: int = Field(128, gt=0, le=4096)
     seed: int = Field(ge=0)
     vary: tuple[str, ...]

@@ -1,4 +1,4 @@
-"""Samples in files: batches, places of focused designs, and all of it as one dataset."""
+"""Samples in files: batches, and all of them as one dataset."""
 
 import os
 from collections.abc import Mapping, Sequence
@@ -131,11 +131,6 @@ def write_all(path: Path, files: Sequence[Path]) -> None:
     write(
         path, join([open_file(file) for file in files]), "claims on samples of the open parameters"
     )
-
-
-def read_places(path: Path) -> np.ndarray:
-    """Read the samples of a focused design, shape (points, varied factors)."""
-    return open_file(path)["place"].values
 
 
 def join(contents: Sequence[xr.Dataset]) -> xr.Dataset:

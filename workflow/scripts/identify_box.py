@@ -1,11 +1,11 @@
-"""Draw the samples of a focused design around the best ones before it."""
+"""Find the box that the best samples before a focused design span."""
 
 import argparse
 from pathlib import Path
 
 from gearmesh import paths
 from gearmesh.claims import load_ledger
-from gearmesh.identification import focus, layout, store
+from gearmesh.identification import boxes, focus, layout, store
 from gearmesh.identification.settings import load_settings
 from gearmesh.identification.survey import tested_claims
 from gearmesh.job import job
@@ -21,8 +21,8 @@ def main() -> None:
     with job("identification"):
         design = load_settings(options.settings).designs[options.design]
         ledger = [c for c in load_ledger(paths.CLAIMS) if c.id in tested_claims()]
-        cloud = focus.around(store.read(*options.batches), design, ledger)
-        focus.write_cloud(layout.places_file(options.design), cloud, design)
+        box = focus.around(store.read(*options.batches), design, ledger)
+        boxes.write_box(layout.box_file(options.design), box, design)
 
 
 if __name__ == "__main__":
