@@ -20,7 +20,8 @@ try:
     PLAN = pipeline.load(config, workflow.configfiles)
     KNOWN = {}
     if workflow.is_main_process:
-        KNOWN = PLAN.look(asked=sys.argv, only_tell=workflow.output_settings.dryrun)
+        looks = workflow.output_settings.dryrun or pipeline.only_looks(sys.argv)
+        KNOWN = PLAN.look(asked=sys.argv, only_tell=looks or not job.hold_results())
 except InputError as error:
     job.tell(f"error: {error}")
     sys.exit(job.BAD_INPUT)

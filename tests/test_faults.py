@@ -4,6 +4,7 @@ Real runs of real processes, on a tiny study.
 """
 
 import contextlib
+import fcntl
 import os
 import random
 import shutil
@@ -153,6 +154,31 @@ def test_two_runs_at_once_do_not_disturb_each_other(tiny, fresh):
     if second.returncode:  # it came while the first was at work
         assert "another run is at work here; wait for its end, or stop it" in second.stdout
     assert fresh.results() == tiny.results()
+
+
+def test_a_look_at_the_workflow_deletes_nothing(fresh):
+    damaged = _damaged_dataset(fresh)
+    for option in ("--lint", "--summary"):
+        told = fresh.run(options=(option,)).stdout
+        assert "resonance.nc: damaged, to be made again" in told
+        assert damaged.exists()
+
+
+def test_a_run_that_is_turned_away_deletes_nothing(fresh):
+    damaged = _damaged_dataset(fresh)
+    with fresh.path("results/.run.lock").open("a") as lock:
+        fcntl.flock(lock, fcntl.LOCK_EX)
+        second = fresh.run("data")
+    assert second.returncode
+    assert "another run is at work here" in second.stdout
+    assert damaged.exists()
+
+
+def _damaged_dataset(project: Project) -> Path:
+    damaged = project.path("results/datasets/resonance.nc")
+    damaged.parent.mkdir(parents=True, exist_ok=True)
+    damaged.write_bytes(b"not a dataset")
+    return damaged
 
 
 def test_an_unwritable_compilation_cache_changes_nothing(tiny, fresh, tmp_path):

@@ -39,7 +39,8 @@ def simulate(
     Returns
     -------
     list of Response
-        In the order of `problems`. A run that fails has a status other than ``"ok"``.
+        In the order of `problems`. A run that fails has a status other than ``"ok"``. Samples of
+        runs that were solved together are pieces of one array: copy those that you keep.
     """
     responses: list[Response | None] = [None] * len(problems)
     reducible = [i for i, problem in enumerate(problems) if reduced.is_reducible(problem)]

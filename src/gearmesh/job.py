@@ -61,7 +61,7 @@ def job(stage: str) -> Iterator[None]:
 
 @contextlib.contextmanager
 def part(name: str) -> Iterator[None]:
-    """Note the processor time of a part of a job, for `benchmarks.pipeline_stages`."""
+    """Note the processor time of a part of a job; `benchmarks.pipeline_stages` alone reads it."""
     start = time.process_time()
     yield
     note({"part": name, "processor": time.process_time() - start})
@@ -90,8 +90,37 @@ def write_text(path: Path, text: str) -> None:
             temporary.unlink()
 
 
+def hold_results() -> bool:
+    """Take the lock of a run until this process ends; return whether no other run has it.
+
+    Jobs that outlive a run that was killed are waited for: they still write.
+
+    Raises
+    ------
+    InputError
+        If the results cannot be written.
+    """
+    global _held
+    if _held is not None:
+        return True
+    lock = _open(RUN_LOCK)
+    try:
+        fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except BlockingIOError:
+        lock.close()
+        return False
+    _held = lock
+    with _open(JOBS_LOCK) as jobs:
+        try:
+            fcntl.flock(jobs, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except BlockingIOError:
+            tell("waiting for jobs of an interrupted run")
+            fcntl.flock(jobs, fcntl.LOCK_EX)
+    return True
+
+
 def begin_run(cases: int) -> None:
-    """Begin a run: take its lock until this process ends, and start a new journal.
+    """Begin a run: hold the results, and start a new journal.
 
     Parameters
     ----------
@@ -103,20 +132,10 @@ def begin_run(cases: int) -> None:
     InputError
         If another run is at work in the results, or they cannot be written.
     """
-    global _held
-    _held = _open(RUN_LOCK)
-    try:
-        fcntl.flock(_held, fcntl.LOCK_EX | fcntl.LOCK_NB)
-    except BlockingIOError:
+    if not hold_results():
         raise InputError(
             f"{paths.RESULTS}: another run is at work here; wait for its end, or stop it"
-        ) from None
-    with _open(JOBS_LOCK) as lock:
-        try:
-            fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
-        except BlockingIOError:
-            tell("waiting for jobs of an interrupted run")
-            fcntl.flock(lock, fcntl.LOCK_EX)
+        )
     JOURNAL.write_text(json.dumps({"cases": cases, "start": time.time()}) + "\n")
 
 

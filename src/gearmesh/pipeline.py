@@ -14,10 +14,20 @@ from gearmesh import batches, casefile, paths, provenance
 from gearmesh.batches import Batch
 from gearmesh.configuration import Case, Study, load_study
 from gearmesh.errors import InputError
+from gearmesh.identification import layout
 from gearmesh.job import tell
 
 SCRIPTS = Path("workflow/scripts")
 _SETTINGS = ("study",)
+_LOOKS = (
+    *("-l", "-S", "-D", "-t", "--lint", "--list", "--lt", "--lc", "--li", "--lp", "--lu", "--cm"),
+    *("--summary", "--detailed-summary", "--dag", "--rulegraph", "--filegraph", "--d3dag"),
+    *("--unlock", "--report", "--archive", "--touch", "--containerize", "--export-cwl"),
+    *("--generate-unit-tests", "--print-compilation", "--deploy-sources"),
+)
+_LOOKS_BEGIN = ("--list-", "--cleanup-", "--delete-", "--conda-c", "--container-cleanup-")
+"""Options of Snakemake with which it runs no job, and how others of that kind begin."""
+
 _RECORDS = (Path(".snakemake/metadata"), Path(".snakemake/incomplete"))
 """Where Snakemake keeps what it knows of files, and of those that are being made."""
 
@@ -152,16 +162,28 @@ class Plan:
         """Delete what may be of other parameters, where Snakemake's records of them are gone.
 
         Without a record Snakemake takes a file for what is wanted. Case files and batch files say
-        themselves what they are; all else follows from the files that are named here.
+        themselves what they are; all else follows from the files that are named here, or is one of
+        the samples of the identification.
         """
         outdated = [self.batch_file(batch) for batch in self.batches if not self._is_current(batch)]
-        for file in (*outdated, paths.RESONANCE, paths.THRESHOLDS, paths.check_file("printed")):
+        samples = layout.FOLDER.glob("*/*.nc")
+        first = (paths.RESONANCE, paths.THRESHOLDS, paths.check_file("printed"))
+        for file in (*outdated, *first, *samples):
             if Path(file).exists():
                 _drop(file, "without a record of its parameters", only_tell)
 
     def _is_current(self, batch: Batch) -> bool:
         wanted = casefile.recipe(batches.attributes(self.study.parameters, batch))
         return casefile.is_whole(Path(self.batch_file(batch)), wanted)
+
+
+def only_looks(arguments: Sequence[str]) -> bool:
+    """Tell whether a command line asks Snakemake for something else than to run jobs.
+
+    Snakemake reads the Snakefile for all of them alike, and says only later what it is asked.
+    """
+    options = [argument.split("=")[0] for argument in arguments]
+    return any(option in _LOOKS or option.startswith(_LOOKS_BEGIN) for option in options)
 
 
 def _drop(file: Path | str, why: str, only_tell: bool) -> None:

@@ -16,8 +16,7 @@ STATUSES = ("ok", "step_limit", "extremum_overflow", "not_finite")
 """Their names, as `Response.status` tells them."""
 
 LOOSENING = 100.0
-"""How much looser the companion run is whose difference estimates the errors; it also starts
-displaced by the tolerance, for where stops decide the steps a looser tolerance changes nothing."""
+"""How much looser the companion run is whose difference estimates the errors."""
 
 SENSITIVE = 1e5
 """An estimated error above this multiple of the tolerance marks a sensitive orbit."""

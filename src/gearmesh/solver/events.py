@@ -25,7 +25,6 @@ from gearmesh.solver.workspace import (
     LEVEL_BELOW,
     N_PLACES,
     OFFSET,
-    ORDER,
     REMAINING,
     SEEN_HALF_A,
     SEEN_V,
@@ -53,7 +52,7 @@ def _dip(like, work, guards, side, floor, suspect, low, high):
     active = suspect
     value = zero
     for _ in range(_MOST_ITERATIONS):
-        y, v, half_a, twist = evaluate_with_twist(like, work, Y, ORDER + 1, at)
+        y, v, half_a, twist = evaluate_with_twist(like, work, at)
         value = side * select(guards, y - floor, v)
         slope = select(guards, v, 2.0 * half_a)
         bend = select(guards, 2.0 * half_a, 6.0 * twist)
@@ -146,7 +145,7 @@ def locate(like, work, wanted, turns, side, level, low, high, at):
     active = wanted
     y_there = zero
     for _ in range(_MOST_ITERATIONS):
-        y, v, half_a, twist = evaluate_with_twist(like, work, Y, ORDER + 1, at)
+        y, v, half_a, twist = evaluate_with_twist(like, work, at)
         value = select(turns, v, y - level)
         slope = select(turns, 2.0 * half_a, v)
         bend = select(turns, 3.0 * twist, half_a)

@@ -148,6 +148,7 @@ def _run(problem: Problem, tolerance: float, samples_per_period: int) -> list[fl
         2.0 * problem.bearing_damping_ratio * frequency,
         *(problem.initial_state or (1.0 - bearing, 0.0, bearing, 0.0)),
         math.log2(tolerance),
+        _EXTREMA_PER_PERIOD * problem.kept_revolutions * problem.teeth,
     ]
 
 
@@ -167,7 +168,7 @@ def integrate(
     summaries["y_max"] = -np.inf
     summaries["y_min"] = np.inf
     strobes = np.empty((n, int(runs["periods"].max()) + 1, 2))
-    extrema = np.empty((n, _EXTREMA_PER_PERIOD * kept), response.EXTREMUM)
+    extrema = np.empty((n, int(runs["most_extrema"].max())), response.EXTREMUM)
     sampled = n if samples_per_period else 0
     row = kept * samples_per_period + lanes.WIDEST
     samples = np.empty((sampled, sweep.SAMPLED, row))

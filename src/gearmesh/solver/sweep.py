@@ -109,13 +109,14 @@ RUN = np.dtype(
         ("bearing_damping", np.float64),
         ("start", np.float64, 4),
         ("log_tolerance", np.float64),
+        ("most_extrema", np.float64),
     ]
 )
 """One run as the kernel takes it, times in tau_s; whole numbers too are kept as floating ones.
 
 For each stretch of constant stiffness and friction sign in a mesh period: its length, C/C_s, the
 share of the elastic force that friction adds to u'', and the number of the first sample of the
-period behind it. `start` is (u, u', b, b').
+period behind it. `start` is (u, u', b, b'); with more than `most_extrema` the run fails.
 """
 
 SUMMARY = np.dtype([*MEASURED, ("final", np.float64, 4)])
@@ -262,7 +263,7 @@ def _turn(like, work, runs, indices, summaries, extrema):
         if index >= extrema.shape[0]:
             continue
         n = summary.extrema
-        if n == extrema.shape[1]:
+        if n == runs[index].most_extrema:
             summary.status = EXTREMUM_OVERFLOW
             continue
         since_start = _get(work, width, PERIOD, lane) * runs[index].period
@@ -288,7 +289,7 @@ def _integrate_square(like, work):
     end = load(like, work, TAKEN)
     total = spread(like, 0.0)
     for i in range(_NODES.size):
-        y = evaluate(like, work, Y, ORDER + 1, end * _NODES[i])
+        y = evaluate(like, work, end * _NODES[i])
         total = fma(y * y, spread(like, _WEIGHTS[i]), total)
     kept_duration = end * load(like, work, KEPT)
     integral = fma(total, kept_duration, load(like, work, SQUARE_INTEGRAL))
@@ -302,13 +303,13 @@ def _take_step(like, work):
     duration = load(like, work, TAKEN)
     turned = load(like, work, EVENT) == spread(like, TURNED)
     if any_lane(turned | (load(like, work, EVENT) == spread(like, CROSSED))):
-        y, v = evaluate_with_slope(like, work, Y, ORDER + 1, duration)
+        y, v = evaluate_with_slope(like, work, Y, duration)
         # v is 0 at a turning point, to the last bit.
         v = select(turned, zero, v)
     else:
         # The last place that was looked at is the end: the same numbers, sooner.
         y, v = load(like, work, SEEN_Y + N_PLACES - 1), load(like, work, SEEN_V + N_PLACES - 1)
-    b, rate = evaluate_with_slope(like, work, B, ORDER + 1, duration)
+    b, rate = evaluate_with_slope(like, work, B, duration)
     store(work, Y, y)
     store(work, Y + 1, v)
     store(work, B, b)

@@ -236,35 +236,35 @@ look = unrolled(_look)
 
 
 @njit(inline="always")
-def evaluate(like, work, series, n, s):
-    """Return the polynomial with `n` coefficients from row `series` at `s`."""
-    value = load(like, work, series + n - 1)
-    for k in range(n - 2, -1, -1):
-        value = fma(value, s, load(like, work, series + k))
+def evaluate(like, work, s):
+    """Return y at `s`."""
+    value = load(like, work, Y + ORDER)
+    for k in range(ORDER - 1, -1, -1):
+        value = fma(value, s, load(like, work, Y + k))
     return value
 
 
 @njit(inline="always")
-def evaluate_with_slope(like, work, series, n, s):
-    """Return the polynomial with `n` coefficients from row `series`, and its slope, at `s`."""
-    value = load(like, work, series + n - 1)
+def evaluate_with_slope(like, work, series, s):
+    """Return the polynomial from row `series`, and its slope, at `s`."""
+    value = load(like, work, series + ORDER)
     slope = spread(like, 0.0)
-    for k in range(n - 2, -1, -1):
+    for k in range(ORDER - 1, -1, -1):
         slope = fma(slope, s, value)
         value = fma(value, s, load(like, work, series + k))
     return value, slope
 
 
 @njit(inline="always")
-def evaluate_with_twist(like, work, series, n, s):
-    """Return the polynomial from row `series` and its first three Taylor coefficients at `s`."""
-    value = load(like, work, series + n - 1)
+def evaluate_with_twist(like, work, s):
+    """Return y and its first three Taylor coefficients at `s`."""
+    value = load(like, work, Y + ORDER)
     slope = spread(like, 0.0)
     bend = slope
     twist = slope
-    for k in range(n - 2, -1, -1):
+    for k in range(ORDER - 1, -1, -1):
         twist = fma(twist, s, bend)
         bend = fma(bend, s, slope)
         slope = fma(slope, s, value)
-        value = fma(value, s, load(like, work, series + k))
+        value = fma(value, s, load(like, work, Y + k))
     return value, slope, bend, twist
