@@ -64,6 +64,21 @@ def test_the_plausible_space_is_sampled_as_asked(root):
         (lambda s: s["designs"]["survey"].update(points=1000), "power of 2"),
         (lambda s: s["designs"]["survey"]["vary"].append("colour"), "unknown factor 'colour'"),
         (lambda s: s["designs"]["near"].update(around="far"), "no design 'far'"),
+        (lambda s: s["designs"]["near"].update(around="near"), "near around near; allowed"),
+        (
+            lambda s: s["designs"]["near"].update(around="nearer"),
+            r"designs\.near\.around: .* circle",
+        ),
+        (lambda s: s["designs"]["nearer"].update(around="survey"), "'survey', as in near; allowed"),
+        (
+            lambda s: s["designs"]["near"]["vary"].remove("kind"),
+            r"designs\.near\.vary.* of survey:",
+        ),
+        (
+            lambda s: s["designs"]["near"]["vary"].reverse(),
+            r"designs\.near\.vary.*found kind, init",
+        ),
+        (lambda s: s["designs"]["near"].update(fixed={"eccentricity_2": 1}), "eccentricity_2 = 1"),
         (lambda s: s["designs"]["run_out"].update(fixed={"kind": "sideways"}), "fixed.kind"),
         (lambda s: s["ranges"].pop("backlash"), "ranges.backlash"),
     ],
