@@ -498,11 +498,15 @@ def test_the_note_states_the_ranges_that_were_identified(root, factor):
     note = (root / "docs" / "assumptions.md").read_text(encoding="utf-8")
     (row,) = (r for r in note.splitlines() if r.startswith(f"| {REASONS[factor]} |"))
     said = row.split("|")[3].partition(";")[0].strip()
-    if said.startswith("identified: "):
-        limits = [s["to"] for s in found["beside"][factor].values() if s["then fail"]]
-        region = found["regions"]["plausible"]["factors"][factor]["region"]
-        numbers = set(re.findall(r"\d+(?:\.\d+)?", said))
-        assert numbers and numbers <= rounded(*limits, *region)
+    limits = [s["to"] for s in found["beside"][factor].values() if s["then fail"]]
+    if not limits:
+        assert not said.startswith("identified")
+        return
+    assert said.startswith("identified: ")
+    numbers = set(re.findall(r"\d+(?:\.\d+)?", said))
+    region = found["regions"]["plausible"]["factors"][factor]["region"]
+    assert numbers <= rounded(*limits, *region)
+    assert all(numbers & rounded(limit) for limit in limits)
 
 
 def test_the_study_lies_where_the_evidence_wants_it(root, parameters):
