@@ -13,11 +13,14 @@ from snakemake.utils import min_version
 
 from gearmesh import job, paths, pipeline
 from gearmesh.errors import InputError
+from gearmesh.identification import layout
+from gearmesh.identification.settings import load_settings
 
 min_version("9.0")
 
 try:
     PLAN = pipeline.load(config, workflow.configfiles)
+    DESIGNS = load_settings(layout.SETTINGS)
     KNOWN = {}
     if workflow.is_main_process:
         looks = workflow.output_settings.dryrun or pipeline.only_looks(sys.argv)

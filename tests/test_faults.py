@@ -130,18 +130,29 @@ WRONG = {
 }
 
 
+def refusal(project: Project) -> str:
+    """Run, and return the one line with which the run is refused."""
+    finished = project.run("data")
+    assert finished.returncode == 2
+    assert "Traceback" not in finished.stdout
+    (line,) = (line for line in finished.stdout.splitlines() if line.startswith("gearmesh:"))
+    return line
+
+
 @pytest.mark.parametrize("text", WRONG)
 def test_a_wrong_configuration_is_told_before_anything_is_written(fresh, text):
     fresh.path("config/tiny.yaml").write_text(f"base: paper.yaml\n{text}\n")
     before = sorted(fresh.folder.iterdir())
-    finished = fresh.run("data")
-    assert finished.returncode == 2
-    (line,) = (line for line in finished.stdout.splitlines() if line.startswith("gearmesh:"))
+    line = refusal(fresh)
     assert line.startswith("gearmesh: error: config/tiny.yaml: ")
     assert WRONG[text] in line
-    assert "Traceback" not in finished.stdout
     snakemake_s_own = fresh.path(".snakemake")
     assert sorted(set(fresh.folder.iterdir()) - {snakemake_s_own}) == before
+
+
+def test_a_slip_in_what_is_identified_is_told_like_one_in_the_study(fresh):
+    fresh.path("config/identify.yaml").write_text("ranges: {backlash: {low: 1}}\n")
+    assert refusal(fresh).startswith("gearmesh: error: config/identify.yaml: ")
     assert not fresh.path("results").exists()
 
 

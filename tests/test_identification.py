@@ -64,6 +64,21 @@ def test_the_plausible_space_is_sampled_as_asked(root):
         (lambda s: s["designs"]["survey"].update(points=1000), "power of 2"),
         (lambda s: s["designs"]["survey"]["vary"].append("colour"), "unknown factor 'colour'"),
         (lambda s: s["designs"]["near"].update(around="far"), "no design 'far'"),
+        (lambda s: s["designs"]["near"].update(around="near"), "near around near; allowed"),
+        (
+            lambda s: s["designs"]["near"].update(around="nearer"),
+            r"designs\.near\.around: .* circle",
+        ),
+        (lambda s: s["designs"]["nearer"].update(around="survey"), "'survey', as in near; allowed"),
+        (
+            lambda s: s["designs"]["near"]["vary"].remove("kind"),
+            r"designs\.near\.vary.* of survey:",
+        ),
+        (
+            lambda s: s["designs"]["near"]["vary"].reverse(),
+            r"designs\.near\.vary.*found kind, init",
+        ),
+        (lambda s: s["designs"]["near"].update(fixed={"eccentricity_2": 1}), "eccentricity_2 = 1"),
         (lambda s: s["designs"]["run_out"].update(fixed={"kind": "sideways"}), "fixed.kind"),
         (lambda s: s["ranges"].pop("backlash"), "ranges.backlash"),
     ],
@@ -399,8 +414,52 @@ def test_run_out_is_told_by_what_it_costs():
     }
     costs = presentation.run_out_costs(found, ["F1", "F2", "F3"])
     assert costs == {
-        "lost": ["F1"], "alone_lost": ["F3"], "alone_least": 2.0, "alone_fragile": ["F1"]
+        "lost": ["F1"], "by_friction": ["F1"], "alone_lost": ["F3"], "need_friction": ["F3"],
+        "alone_least": 2.0, "alone_fragile": ["F1"],
     }  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    ("with_friction", "without", "said"),
+    [
+        (  # friction is to blame, and one claim needs it
+            {"F2.1": 0.0, "F7.1": 2.0},
+            {"F2.1": 1.5, "F7.1": 0.0},
+            "F2.1 fails with the least run-out that was tried. The reason is friction: .* does: "
+            r"F7\.1 fails with the least \(for want of friction\); all else that holds in "
+            r"this study holds up to the greatest .* 1\.5 static deflections\. What the paper "
+            r"describes are therefore wheels that run true, or a friction .* not turn\.</p>",
+        ),
+        (  # run-out costs nothing at first
+            {"F2.1": 3.0, "F7.1": 2.0},
+            {"F2.1": 1.5, "F7.1": 3.0},
+            "no claim is lost by the least run-out that was tried. 32 samples .* does: all that "
+            r"holds in this study holds up to an eccentricity of 1\.5 static deflections, beyond "
+            r"which F2\.1 fails\.</p>",
+        ),
+        (  # one claim fails by friction, one by the eccentricity itself
+            {"F2.1": 0.0, "F7.1": 0.0},
+            {"F2.1": 2.0, "F7.1": 0.0},
+            r"F2\.1, F7\.1 fail with the least run-out that was tried\. The reason for F2\.1 is "
+            r"friction: .* does: F7\.1 fails with the least; all else .* What the paper describes "
+            r"are therefore wheels that run true\.</p>",
+        ),
+        (  # friction has no part in it
+            {"F2.1": 0.0, "F7.1": 0.0},
+            {"F2.1": 0.0, "F7.1": 0.0},
+            r"was tried\. 32 samples .* does: F2\.1, F7\.1 fail with the least; nothing that holds "
+            r"in this study is left\. What the paper describes are therefore wheels that run "
+            r"true\.</p>",
+        ),
+    ],
+)
+def test_the_text_on_run_out_follows_the_numbers(root, parameters, with_friction, without, said):
+    found = table.read(root / layout.IDENTIFIED)
+    found["run-out"] = {"with friction": with_friction, "without friction": without}
+    ledger, settings = load_ledger(root / paths.CLAIMS), load_settings(root / SETTINGS)
+    page = presentation.section(found, ledger, settings, parameters)
+    (told,) = (line for line in page.splitlines() if line.startswith("<p>Run-out"))
+    assert re.search(said, told), told
 
 
 REASONS = {
@@ -439,11 +498,15 @@ def test_the_note_states_the_ranges_that_were_identified(root, factor):
     note = (root / "docs" / "assumptions.md").read_text(encoding="utf-8")
     (row,) = (r for r in note.splitlines() if r.startswith(f"| {REASONS[factor]} |"))
     said = row.split("|")[3].partition(";")[0].strip()
-    if said.startswith("identified: "):
-        limits = [s["to"] for s in found["beside"][factor].values() if s["then fail"]]
-        region = found["regions"]["plausible"]["factors"][factor]["region"]
-        numbers = set(re.findall(r"\d+(?:\.\d+)?", said))
-        assert numbers and numbers <= rounded(*limits, *region)
+    limits = [s["to"] for s in found["beside"][factor].values() if s["then fail"]]
+    if not limits:
+        assert not said.startswith("identified")
+        return
+    assert said.startswith("identified: ")
+    numbers = set(re.findall(r"\d+(?:\.\d+)?", said))
+    region = found["regions"]["plausible"]["factors"][factor]["region"]
+    assert numbers <= rounded(*limits, *region)
+    assert all(numbers & rounded(limit) for limit in limits)
 
 
 def test_the_study_lies_where_the_evidence_wants_it(root, parameters):

@@ -1,12 +1,9 @@
 # Infer what the paper does not print: samples of the open parameters, in batches; focused designs
-# fill a box around the best of what came before. Nothing here is part of the default target, which reads
-# the committed table config/identified.yaml.
+# fill a box around the best of what came before. Nothing here is part of the default target, which
+# reads the committed table config/identified.yaml.
 from gearmesh import provenance
-from gearmesh.identification import layout
 from gearmesh.identification.design import left_alone
-from gearmesh.identification.settings import load_settings
 
-DESIGNS = load_settings(layout.SETTINGS)
 MEASURE = pipeline.script("identify_batch")
 BOX = pipeline.script("identify_box")
 GATHER = pipeline.script("identify_dataset")

@@ -1,5 +1,4 @@
 # The report page, and the captions of `snakemake --report`.
-from gearmesh.identification import layout
 
 REPORT = pipeline.script("build_report")
 

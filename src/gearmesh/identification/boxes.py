@@ -3,8 +3,8 @@
 Few samples of an even design meet many claims at once. A focused design fills the box that the best
 samples before it span, evenly again. Each sample then counts by the inverse of the density with
 which all designs of its family together were drawn there (the balance heuristic of Veach and
-Guibas, 1995): inside a box it is one over its volume, outside 0. So shares and regions mean the
-even prior, whatever the boxes are.
+Guibas, 1995): inside a box it is one over its volume, outside 0. So for given boxes shares and
+regions mean the even prior. That the boxes come from the same samples is what `MARGIN` is for.
 """
 
 from collections.abc import Sequence

@@ -104,9 +104,14 @@ def run_out_costs(found: Mapping[str, Any], expected: Sequence[str]) -> dict[str
     )
     most = {name: up_to for name, up_to in alone.items() if up_to > 0}
     least = min(most.values(), default=0.0)
+    lost, alone_lost = (
+        [name for name, up_to in borne.items() if up_to == 0] for borne in (bears, alone)
+    )
     return {
-        "lost": [name for name, up_to in bears.items() if up_to == 0],
-        "alone_lost": [name for name, up_to in alone.items() if up_to == 0],
+        "lost": lost,
+        "by_friction": [name for name in lost if name not in alone_lost],
+        "alone_lost": alone_lost,
+        "need_friction": [name for name in alone_lost if name not in lost],
         "alone_least": least,
         "alone_fragile": [
             name for name, up_to in most.items() if up_to == least < max(most.values())

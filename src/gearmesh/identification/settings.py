@@ -96,6 +96,11 @@ class Design(Section):
             raise ValueError(f"fixed.kind: found {kind!r}; allowed are {', '.join(KINDS)}")
         return self
 
+    @property
+    def space(self) -> str:
+        """What its samples are places in: the factors that vary, in order, and the fixed ones."""
+        return ", ".join([*self.vary, *(f"{f} = {self.fixed[f]}" for f in sorted(self.fixed))])
+
 
 class Wording(Section):
     """How the paper words a number, and so how exactly it may be taken.
@@ -141,6 +146,33 @@ class Settings(Section):
             for factor in design.vary:
                 if factor not in self.ranges and factor != "kind":
                     raise ValueError(f"ranges.{factor}: missing; design {name} varies it")
+        return self
+
+    @model_validator(mode="after")
+    def _is_made_of_chains(self) -> Self:
+        focused = {name: d for name, d in self.designs.items() if d.around is not None}
+        followed: dict[str, str] = {}
+        for name, design in focused.items():
+            chain, where = [name], f"designs.{name}"
+            while (before := self.designs[chain[-1]].around) is not None:
+                chain.append(before)
+                if before in chain[:-1]:
+                    raise ValueError(
+                        f"{where}.around: found a circle, {' around '.join(chain)}; "
+                        "allowed is a chain that ends at a design around none"
+                    )
+            if first := followed.get(design.around):
+                raise ValueError(
+                    f"{where}.around: found {design.around!r}, as in {first}; "
+                    "allowed is one design around each"
+                )
+            followed[design.around] = name
+            parent = self.designs[design.around]
+            if design.space != parent.space:  # samples of a chain are weighed as one even design
+                raise ValueError(
+                    f"{where}.vary, fixed: found {design.space}; "
+                    f"allowed is that of {design.around}: {parent.space}"
+                )
         return self
 
 
