@@ -1,7 +1,9 @@
 """Compiled kernels that are kept on disk, and noticed when their sources change."""
 
+import contextlib
+import fcntl
 import hashlib
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from functools import lru_cache, wraps
 from pathlib import Path
 from types import ModuleType
@@ -11,7 +13,8 @@ def persistent(build: Callable[[str, bool], Callable], *modules: ModuleType) -> 
     """Return the function that `build` compiles, compiled at its first call and kept on disk.
 
     numba looks for changes only in the file of the function that it keeps, and not in those of
-    the functions that this one calls.
+    the functions that this one calls. Nor does it keep processes that start together from doing
+    the same work: here one compiles, and the others wait for what it keeps.
 
     Parameters
     ----------
@@ -33,7 +36,11 @@ def persistent(build: Callable[[str, bool], Callable], *modules: ModuleType) -> 
     @wraps(build)
     def call(*arguments):
         try:
-            return compiled(True)(*arguments)
+            kernel = compiled(True)
+            if kernel.signatures:
+                return kernel(*arguments)
+            with _alone(kernel.stats.cache_path, build.__name__):
+                return kernel(*arguments)
         except OSError:  # the cache cannot be read or written: compile for this process alone
             return compiled(False)(*arguments)
 
@@ -42,3 +49,14 @@ def persistent(build: Callable[[str, bool], Callable], *modules: ModuleType) -> 
 
 def _source(module: ModuleType) -> bytes:
     return Path(module.__file__).read_bytes()
+
+
+@contextlib.contextmanager
+def _alone(cache: str | None, name: str) -> Iterator[None]:
+    """Let one process at a time go on; where nothing is kept, or no file can be locked, all."""
+    with contextlib.ExitStack() as stack:
+        with contextlib.suppress(OSError):
+            if cache:
+                lock = stack.enter_context((Path(cache) / f"{name}.lock").open("a"))
+                fcntl.flock(lock, fcntl.LOCK_EX)
+        yield
