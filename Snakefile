@@ -42,6 +42,8 @@ localrules:
     data,
     datasets,
     fig1,
+    identified_figures,
+    notebook_pages,
     printed,
     ledger,
     report,

@@ -46,9 +46,7 @@ def misses(folder, module_file, processes):
     spawning = multiprocessing.get_context("spawn")
     together, counts = spawning.Barrier(processes), spawning.Queue()
     arguments = (together, folder, module_file, counts)
-    started = [
-        spawning.Process(target=compile_and_count, args=arguments) for _ in range(processes)
-    ]
+    started = [spawning.Process(target=compile_and_count, args=arguments) for _ in range(processes)]
     for process in started:
         process.start()
     found = [counts.get(timeout=120) for _ in started]

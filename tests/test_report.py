@@ -13,6 +13,9 @@ from hypothesis import strategies as st
 from gearmesh import paths, report
 from gearmesh.claims import Entry, Evidence, check_figure, load_ledger, write_entries
 from gearmesh.equations import EQUATIONS
+from gearmesh.identification import layout
+from gearmesh.job import write_text
+from gearmesh.notebook_page import notebook_page
 from gearmesh.parameters import Assumed
 from gearmesh.presentation import claims_table, expected, found, number, typeset
 
@@ -85,6 +88,12 @@ def built(root, small_run, small_study, entries):
     with pytest.MonkeyPatch.context() as patch:
         patch.chdir(small_run)
         report.write_report(small_study)
+        for name in paths.NOTEBOOK_NAMES:
+            page = notebook_page(paths.executed_notebook(name))
+            write_text(paths.notebook_page(name), page)
+        for path in layout.REPORTED.values():
+            for suffix in (".png", ".svg"):
+                path.with_suffix(suffix).touch()
     return small_run
 
 

@@ -97,10 +97,10 @@ def test_a_rerun_has_nothing_to_do(smoke):
 
 
 # What an edit reruns, besides the verdict: (what is edited, how, which rules run).
-END = {"ledger", "report"}
+END = {"ledger", "notebook_pages", "report"}
 CASES = {"cases_0"}
 AFTER_CASES = {"datasets", *FIGURES, *END}
-EVERYTHING = {*CASES, "thresholds", "printed", *AFTER_CASES}
+EVERYTHING = {*CASES, "thresholds", "printed", "identified_figures", *AFTER_CASES}
 
 AFTER_THRESHOLDS = {"thresholds", "printed", *FIGURES, *END}
 NEW_CASES = {*CASES, *AFTER_CASES}
@@ -111,6 +111,7 @@ INCREMENTS = {
     "notebook": ("notebooks/fig3.ipynb", "## What is seen", "## Seen", {"fig3", *END}),
     "check": ("src/gearmesh/claims/fig5.py", '"""', '"""About it: ', {"fig5", *END}),
     "caption": ("workflow/report/fig4.rst", "", "More. ", {"report"}),
+    "identified": ("config/identified.yaml", "", "# more\n", {"identified_figures", "report"}),
     "thresholds": ("src/gearmesh/thresholds.py", '"""', '""" ', AFTER_THRESHOLDS),
     "datasets": ("src/gearmesh/datasets.py", '"""', '""" ', {*AFTER_CASES}),
     "physics": ("src/gearmesh/friction.py", '"""', '""" ', EVERYTHING),

@@ -27,7 +27,10 @@ RUN_LOCK = paths.RESULTS / ".run.lock"
 JOBS_LOCK = paths.RESULTS / ".jobs.lock"
 JOURNAL = paths.RESULTS / ".journal"
 
-STAGES = ("cases", "datasets", "thresholds", "figures", "ledger", "report", "identification")
+STAGES = (
+    *("drawings", "cases", "thresholds", "datasets", "figures", "ledger", "report"),
+    "identification",
+)
 """Stages of the pipeline, in their order."""
 
 BAD_INPUT = 2

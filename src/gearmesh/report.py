@@ -1,8 +1,8 @@
-"""The report: one page that opens from disk, and the notebooks as pages beside it.
+"""The report: one page that opens from disk.
 
-Nothing on the pages comes from a network: styles are within them, equations are MathML, figures
-and notebooks are linked by relative paths. `render` makes the page from what it is given;
-`write_report` reads the results of a run and writes all pages.
+Nothing on it comes from a network: styles are within it, equations are MathML, figures and the
+pages of the notebooks are linked by relative paths. `render` makes the page from what it is given;
+`write_report` reads the results of a run and writes it.
 """
 
 import os
@@ -12,11 +12,8 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-import nbformat
 import numpy as np
 import xarray as xr
-from nbconvert import HTMLExporter
-from pygments.formatters import HtmlFormatter
 
 from gearmesh import paths, provenance
 from gearmesh.casefile import STATUSES
@@ -24,12 +21,10 @@ from gearmesh.claims import Entry, load_ledger, read_entries, verdict
 from gearmesh.configuration import Study
 from gearmesh.datasets import open_dataset
 from gearmesh.equations import EQUATIONS
-from gearmesh.figures import canvas
 from gearmesh.identification import layout, table
-from gearmesh.identification.design import stated
-from gearmesh.identification.figures import draw_regions, draw_sensitivity
 from gearmesh.identification.presentation import section
 from gearmesh.identification.settings import load_settings
+from gearmesh.job import write_text
 from gearmesh.parameters import DERIVATIONS, rows
 from gearmesh.presentation import environment, number
 
@@ -61,7 +56,7 @@ class Parameter:
 
 
 def write_report(study: Study) -> None:
-    """Write `results/report/` from the results of a run.
+    """Write `results/report/index.html` from the results of a run.
 
     Parameters
     ----------
@@ -73,26 +68,20 @@ def write_report(study: Study) -> None:
     InputError
         If a result is missing or damaged.
     """
-    for name in paths.NOTEBOOK_NAMES:
-        _write(paths.notebook_page(name), notebook_page(paths.executed_notebook(name)))
     captions = {
         name: (CAPTIONS / f"{name}.rst").read_text(encoding="utf-8") for name in paths.FIGURE_NAMES
     }
     resonance = open_dataset(paths.RESONANCE)
     page = render(study, read_entries(paths.LEDGER), resonance, captions, _identified(study))
-    _write(paths.REPORT, page)
+    write_text(paths.REPORT, page)
 
 
 def _identified(study: Study) -> str:
-    """Draw what the claims tell about the open parameters, and return it as HTML."""
-    found, settings = table.read(), load_settings(layout.SETTINGS)
-    regions = draw_regions(found["regions"], settings.ranges, stated(study.parameters))
-    canvas.save(regions, layout.REPORTED["regions"])
-    canvas.save(draw_sensitivity(found["sensitivity"]), layout.REPORTED["sensitivity"])
+    """Return as HTML what the claims tell about the open parameters."""
     return section(
-        found,
+        table.read(),
         load_ledger(paths.CLAIMS),
-        settings,
+        load_settings(layout.SETTINGS),
         study.parameters,
         {name: _relative(path) for name, path in layout.REPORTED.items()},
     )
@@ -138,25 +127,6 @@ def render(
             sensitivity=list(_sensitivity(resonance)),
         )
     )
-
-
-def notebook_page(path: Path) -> str:
-    """Return an executed notebook as a page without scripts."""
-    exporter = HTMLExporter(
-        template_name="basic",
-        exclude_input_prompt=True,
-        exclude_output_prompt=True,
-        exclude_anchor_links=True,
-    )
-    body, _ = exporter.from_notebook_node(nbformat.read(path, as_version=4))
-    template = environment().get_template("notebook.html.j2")
-    style = HtmlFormatter(style="friendly").get_style_defs(".highlight")
-    return template.render(name=path.stem, body=body, highlighting=style)
-
-
-def _write(path: Path, page: str) -> None:
-    path.parent.mkdir(parents=True, exist_ok=True)
-    path.write_text(page, encoding="utf-8")
 
 
 def _relative(target: Path) -> str:

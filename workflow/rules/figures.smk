@@ -10,7 +10,8 @@ SHOWN = {
     "fig6": ["c-material", "c-material-5x"],
     "fig7": ["c-material", "c-material-5x"],
 }
-LOOKS = ["src/gearmesh/figures/gearmesh.mplstyle", "src/gearmesh/templates/claims.html.j2"]
+STYLE = "src/gearmesh/figures/gearmesh.mplstyle"
+LOOKS = [STYLE, "src/gearmesh/templates/claims.html.j2"]
 
 
 rule thresholds:
@@ -23,6 +24,8 @@ rule thresholds:
     params:
         recipe=PLAN.recipe,
         variants=PLAN.variants,
+    # All figures wait for it, and it compiles code of its own: it goes first.
+    priority: 1
     shell:
         'python workflow/scripts/locate_thresholds.py "$STUDY" 2>&1 | tee {log}'
 
@@ -30,7 +33,7 @@ rule thresholds:
 rule fig1:
     input:
         pipeline.sources(FIG1),
-        LOOKS,
+        STYLE,
     output:
         report(paths.FIGURES / "fig1.png", caption="../report/fig1.rst", category="Figures"),
         paths.FIGURES / "fig1.svg",

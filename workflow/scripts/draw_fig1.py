@@ -13,7 +13,7 @@ def main() -> None:
     parser.add_argument("png", type=Path)
     parser.add_argument("svg", type=Path, help="beside it, with the same name")
     options = parser.parse_args()
-    with job("figures"):
+    with job("drawings"):
         canvas.save(fig1.draw(), options.png.with_suffix(""))
 
 

@@ -1,6 +1,6 @@
 """Figures of what the paper does not print: the regions of its parameters, and their say."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
@@ -10,13 +10,9 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
-from gearmesh.claims import Claim
 from gearmesh.figures import palette
 from gearmesh.figures.canvas import WIDTH, styled
 from gearmesh.identification.settings import Range
-from gearmesh.identification.store import Samples
-from gearmesh.identification.wording import statements, weight_of_claims
-from gearmesh.thresholds import FIRST, LAST
 
 SYMBOLS = {
     "backlash": "$s/y_{st}$",
@@ -32,7 +28,7 @@ SYMBOLS = {
 
 _DENSITY = {"color": palette.PALE, "alpha": 0.6, "lw": 0}
 
-_TICKS = {
+TICKS = {
     "backlash": (2, 4, 8, 15),
     "damping_length": (0.1, 0.25, 0.5, 1, 2),
     "body_mass": (1, 10, 100, 1000),
@@ -91,7 +87,7 @@ def _draw_factor(axes: Axes, factor: str, found: Mapping[str, Any], bounds: Rang
     axes.set_ylim(-0.2, len(varied) - 0.1)
     axes.set_yticks(range(len(varied)), [readings[reading] for reading in varied])
     axes.tick_params(axis="y", length=0)
-    ticks = [tick for tick in _TICKS[factor] if bounds.low <= tick <= bounds.high]
+    ticks = [tick for tick in TICKS[factor] if bounds.low <= tick <= bounds.high]
     labels = [f"{tick:g}".replace("-", "−") for tick in ticks]
     axes.set_xticks([bounds.unit(tick) for tick in ticks], labels)
     axes.set_title(SYMBOLS[factor], pad=2)
@@ -103,72 +99,6 @@ def _draw_shape(axes: Axes, shape: np.ndarray, base: float, height: float) -> No
     edges = np.linspace(0.0, 1.0, shape.size + 1)
     axes.stairs(base + scale * shape, edges, baseline=base, fill=True, **_DENSITY)
     axes.plot([0.0, 1.0], [base + scale] * 2, color=palette.GREY, lw=0.6, ls=(0, (4, 3)))
-
-
-@styled
-def draw_supports(samples: Samples, ledger: Sequence[Claim]) -> Figure:
-    """Draw how many claims each sample meets, over the parameters that decide most.
-
-    Parameters
-    ----------
-    samples : Samples
-        Samples of the plausible space.
-    ledger : sequence of Claim
-        Claims; those that samples say nothing about are left out.
-    """
-    tested = {column.partition("|")[0] for column in samples.measured}
-    stated = statements([claim for claim in ledger if claim.id in tested])
-    held = [weight > 0 for weight in weight_of_claims(stated, samples.measured).values()]
-    failing = len(held) - np.sum(held, axis=0)
-    figure = Figure(figsize=(WIDTH, 3.6), layout="constrained")
-    left, right = figure.subplots(1, 2)
-    _scatter(left, samples, "body_mass", "bearing_stiffness", failing)
-    _scatter(right, samples, "damping_length", "backlash", failing)
-    mass = np.array(left.get_xlim())
-    for nu, name in ((FIRST, "0.6"), (LAST, "1.2")):
-        # A body on its supports swings by itself at nu_s = sqrt(c_b/C_s m_red/m).
-        left.plot(mass, nu**2 * mass, color=palette.RED, lw=0.8)
-        left.annotate(
-            name,
-            (30.0, nu**2 * 30.0),
-            color=palette.RED,
-            fontsize=7,
-            ha="center",
-            va="center",
-            bbox={"fc": "white", "ec": "none", "pad": 0.8},
-        )
-    handles = [
-        Line2D([], [], ls="none", marker="o", ms=size, mec="none", color=colour, label=label)
-        for label, colour, size in (
-            ("at most 1 claim fails", palette.BLUE, 4.5),
-            ("2 or 3 fail", "#8fb6d3", 3.5),
-            ("more", palette.PALE, 2.0),
-        )
-    ]
-    handles.append(
-        Line2D([], [], color=palette.RED, lw=0.8, label="resonance of a body at $\\nu_s$")
-    )
-    figure.legend(handles=handles, loc="outside lower center", ncols=4)
-    return figure
-
-
-def _scatter(axes: Axes, samples: Samples, x: str, y: str, failing: np.ndarray) -> None:
-    for chosen, colour, size in (
-        (failing > 3, palette.PALE, 0.8),
-        ((failing == 2) | (failing == 3), "#8fb6d3", 5.0),
-        (failing <= 1, palette.BLUE, 12.0),
-    ):
-        places = samples.values[x][chosen], samples.values[y][chosen]
-        axes.scatter(*places, s=size, color=colour, lw=0)
-    axes.set_xscale("log")
-    axes.set_yscale("log")
-    axes.set_xticks(_TICKS[x], [f"{tick:g}" for tick in _TICKS[x]])
-    axes.set_yticks(_TICKS[y], [f"{tick:g}" for tick in _TICKS[y]])
-    axes.minorticks_off()
-    axes.set_xlim(samples.values[x].min(), samples.values[x].max())
-    axes.set_ylim(samples.values[y].min(), samples.values[y].max())
-    axes.set_xlabel(SYMBOLS[x])
-    axes.set_ylabel(SYMBOLS[y])
 
 
 @styled
