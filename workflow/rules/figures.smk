@@ -25,7 +25,7 @@ rule thresholds:
         recipe=PLAN.recipe,
         variants=PLAN.variants,
     # All figures wait for it, and it compiles code of its own: it goes first.
-    priority: 1
+    priority: 2
     shell:
         'python workflow/scripts/locate_thresholds.py "$STUDY" 2>&1 | tee {log}'
 
@@ -39,6 +39,8 @@ rule fig1:
         paths.FIGURES / "fig1.svg",
     log:
         "results/logs/fig1.log",
+    # It needs nothing that is computed: it fills the time that others wait for compiled code.
+    priority: 1
     shell:
         "python workflow/scripts/draw_fig1.py {output} 2>&1 | tee {log}"
 

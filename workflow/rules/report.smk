@@ -16,6 +16,8 @@ rule identified_figures:
         "results/logs/identified_figures.log",
     params:
         recipe=PLAN.recipe,
+    # As fig1.
+    priority: 1
     shell:
         'python workflow/scripts/draw_identified.py "$STUDY" 2>&1 | tee {log}'
 
