@@ -47,7 +47,8 @@ lock: ## resolve the requirements again (needs uv)
 		--output-file requirements-bench.lock
 
 clean: ## remove the results and the environment
-	rm -rf .venv .snakemake results/*/ results/*.json
+	rm -rf .venv .snakemake
+	find results -mindepth 1 ! -name README.md -delete
 
 $(STAMP): requirements.lock
 	@echo "making the environment in .venv (a minute or two)"

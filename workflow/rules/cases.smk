@@ -15,6 +15,7 @@ for batch in PLAN.batches:
             KNOWN.get(batch.index, []),
         log:
             f"results/logs/cases_{batch.index}.log",
+        priority: 1
         resources:
             mem_mb=1000,
             runtime=30,

@@ -21,11 +21,11 @@ rule thresholds:
         str(paths.THRESHOLDS),
     log:
         "results/logs/thresholds.log",
+    # All figures wait for it, and it compiles code of its own: it goes first.
+    priority: 3
     params:
         recipe=PLAN.recipe,
         variants=PLAN.variants,
-    # All figures wait for it, and it compiles code of its own: it goes first.
-    priority: 2
     shell:
         'python workflow/scripts/locate_thresholds.py "$STUDY" 2>&1 | tee {log}'
 
@@ -40,7 +40,7 @@ rule fig1:
     log:
         "results/logs/fig1.log",
     # It needs nothing that is computed: it fills the time that others wait for compiled code.
-    priority: 1
+    priority: 2
     shell:
         "python workflow/scripts/draw_fig1.py {output} 2>&1 | tee {log}"
 

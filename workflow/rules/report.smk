@@ -14,10 +14,10 @@ rule identified_figures:
         [f"{path}{suffix}" for path in layout.REPORTED.values() for suffix in (".png", ".svg")],
     log:
         "results/logs/identified_figures.log",
+    # As fig1.
+    priority: 2
     params:
         recipe=PLAN.recipe,
-    # As fig1.
-    priority: 1
     shell:
         'python workflow/scripts/draw_identified.py "$STUDY" 2>&1 | tee {log}'
 
