@@ -1,5 +1,7 @@
 """What tests share: the root of the project, and the study of the paper."""
 
+import fcntl
+import os
 import time
 from pathlib import Path
 
@@ -48,9 +50,22 @@ def small_run(small_study: Study, tmp_path_factory: pytest.TempPathFactory) -> P
 
 @pytest.fixture(scope="session")
 def smoke(tmp_path_factory: pytest.TempPathFactory) -> Project:
-    """The smoke study, run to its end by the pipeline."""
-    project = Project.create(tmp_path_factory.mktemp("smoke") / "project", "config/smoke.yaml")
-    project.output = project.run("all").stdout
+    """The smoke study, run to its end by the pipeline.
+
+    Where several processes run the tests, one runs the study, and each has a copy.
+    """
+    common = tmp_path_factory.getbasetemp()
+    if "PYTEST_XDIST_WORKER" in os.environ:
+        common = common.parent
+    place, output = common / "smoke-once", common / "smoke-once.txt"
+    with (common / "smoke-once.lock").open("w") as lock:
+        fcntl.flock(lock, fcntl.LOCK_EX)
+        if not output.exists():
+            made = Project.create(place, "config/smoke.yaml")
+            output.write_text(made.run("all").stdout, encoding="utf-8")
+        made = Project(place, "config/smoke.yaml")
+        project = made.copy(tmp_path_factory.mktemp("smoke") / "project")
+    project.output = output.read_text(encoding="utf-8")
     return project
 
 
