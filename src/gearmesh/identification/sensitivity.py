@@ -66,11 +66,6 @@ class Index:
     high: float
     chance: float
 
-    @property
-    def matters(self) -> bool:
-        """Whether the factor has more say than chance."""
-        return self.value > self.chance
-
 
 def index(
     places: np.ndarray, values: np.ndarray, slices: int, resamples: int = 100, seed: int = 0
