@@ -12,6 +12,7 @@ import sys
 from snakemake.utils import min_version
 
 from gearmesh import job, paths, pipeline
+from gearmesh.claims import load_ledger
 from gearmesh.errors import InputError
 from gearmesh.identification import layout
 from gearmesh.identification.settings import load_settings
@@ -20,6 +21,7 @@ min_version("9.0")
 
 try:
     PLAN = pipeline.load(config, workflow.configfiles)
+    LEDGER = load_ledger(paths.CLAIMS)
     DESIGNS = load_settings(layout.SETTINGS)
     KNOWN = {}
     if workflow.is_main_process:

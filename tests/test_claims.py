@@ -17,7 +17,6 @@ from gearmesh.claims import (
     Entry,
     Evidence,
     NotInStudy,
-    check_figure,
     checking,
     collect,
     fig2,
@@ -33,6 +32,7 @@ from gearmesh.claims import (
     verdict,
     write_entries,
 )
+from gearmesh.claims.checking import check_figure
 from gearmesh.configuration import load_study
 from gearmesh.errors import InputError
 

@@ -150,9 +150,17 @@ def test_a_wrong_configuration_is_told_before_anything_is_written(fresh, text):
     assert sorted(set(fresh.folder.iterdir()) - {snakemake_s_own}) == before
 
 
-def test_a_slip_in_what_is_identified_is_told_like_one_in_the_study(fresh):
-    fresh.path("config/identify.yaml").write_text("ranges: {backlash: {low: 1}}\n")
-    assert refusal(fresh).startswith("gearmesh: error: config/identify.yaml: ")
+@pytest.mark.parametrize(
+    ("name", "text"),
+    [
+        ("config/identify.yaml", "ranges: {backlash: {low: 1}}"),
+        ("config/claims.yaml", "F2.1: {where: Fig. 2, figure: fig9}"),
+        ("config/claims.yaml", "- F2.1"),
+    ],
+)
+def test_a_slip_elsewhere_is_told_like_one_in_the_study(fresh, name, text):
+    fresh.path(name).write_text(f"{text}\n")
+    assert refusal(fresh).startswith(f"gearmesh: error: {name}: ")
     assert not fresh.path("results").exists()
 
 

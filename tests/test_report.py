@@ -11,7 +11,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from gearmesh import paths, report
-from gearmesh.claims import Entry, Evidence, check_figure, load_ledger, write_entries
+from gearmesh.claims import Entry, Evidence, load_ledger, write_entries
+from gearmesh.claims.checking import check_figure
 from gearmesh.equations import EQUATIONS
 from gearmesh.identification import layout
 from gearmesh.job import write_text

@@ -8,10 +8,9 @@ from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
 
-import yaml
-
 from gearmesh import batches, casefile, paths, provenance
 from gearmesh.batches import Batch
+from gearmesh.claims import Claim
 from gearmesh.configuration import Case, Study, load_study
 from gearmesh.errors import InputError
 from gearmesh.identification import layout
@@ -231,25 +230,18 @@ def sources(*files: str) -> list[str]:
 def checked_by(figure: str, *files: str) -> list[str]:
     """Return files that check the claims of a figure, and what they import of it.
 
-    `gearmesh.claims` imports the checks of all figures; a figure depends on its own.
+    `gearmesh.claims.checking` imports the checks of all figures; a figure depends on its own, and
+    on what these import.
     """
-    others = {f"claims/{name}.py" for name in paths.CHECKED if name != figure}
-    return [file for file in sources(*files) if "/".join(Path(file).parts[-2:]) not in others]
+    checks = {provenance.module(f"claims/{name}") for name in paths.CHECKED}
+    own = provenance.module(f"claims/{figure}")
+    others = {_relative(check) for check in checks - {own, *provenance.sources(own)}}
+    return [file for file in sources(*files) if file not in others]
 
 
-def claims_digest(figure: str) -> str:
-    """Return the digest of the claims that belong to a figure.
-
-    The ledger is not checked here: that loads compiled code, which takes longer than all else
-    that a run without work has to do. The jobs check it.
-    """
-    text = paths.CLAIMS.read_text(encoding="utf-8")
-    try:
-        listed = yaml.safe_load(text).items()
-        claims = [(name, claim) for name, claim in listed if claim["figure"] == figure]
-    except (yaml.YAMLError, AttributeError, TypeError, KeyError):
-        claims = text
-    return _digest(claims)
+def claims_digest(ledger: Sequence[Claim], figure: str) -> str:
+    """Return the digest of the claims that belong to a figure."""
+    return _digest([claim for claim in ledger if claim.figure == figure])
 
 
 def templates() -> list[str]:

@@ -13,7 +13,7 @@ rule printed:
         "results/logs/printed.log",
     params:
         recipe=PLAN.recipe,
-        claims=pipeline.claims_digest("printed"),
+        claims=pipeline.claims_digest(LEDGER, "printed"),
     shell:
         'python workflow/scripts/check_printed.py "$STUDY" 2>&1 | tee {log}'
 

@@ -70,7 +70,7 @@ for figure in paths.NOTEBOOK_NAMES:
             paths.executed_notebook(figure),
         params:
             recipe=PLAN.recipe,
-            claims=pipeline.claims_digest(figure),
+            claims=pipeline.claims_digest(LEDGER, figure),
             ledger=str(paths.CLAIMS),
         shell:
             'python workflow/scripts/run_notebook.py {input.notebook} {log} configuration="$STUDY"'

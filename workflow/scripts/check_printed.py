@@ -4,7 +4,8 @@ import argparse
 from pathlib import Path
 
 from gearmesh import paths
-from gearmesh.claims import Evidence, check_figure, load_ledger
+from gearmesh.claims import Evidence, load_ledger
+from gearmesh.claims.checking import check_figure
 from gearmesh.configuration import load_study
 from gearmesh.job import job
 

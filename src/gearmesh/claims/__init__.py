@@ -4,14 +4,14 @@ A notebook or a rule needs these calls::
 
     ledger = load_ledger(paths.CLAIMS)
     evidence = Evidence(parameters=study.parameters, thresholds=json.loads(...), time_courses={...})
-    entries = check_figure("fig2", evidence, ledger, paths.check_file("fig2"))
+    entries = checking.check_figure("fig2", evidence, ledger, paths.check_file("fig2"))
     print(verdict(collect(ledger, all_check_files, paths.LEDGER)))
 
 `gearmesh.claims.ledger` holds claims, entries and the verdict; `printed` and `fig2` to `fig7` hold
-what is measured for each claim.
+what is measured for each claim, and `checking` puts them together. The package itself imports none
+of these: what only reads the ledger need not load the solver.
 """
 
-from gearmesh.claims.checking import check_figure
 from gearmesh.claims.evidence import Evidence, NotInStudy
 from gearmesh.claims.ledger import (
     DEVIATES,
@@ -39,7 +39,6 @@ __all__ = [
     "Evidence",
     "NotInStudy",
     "Verdict",
-    "check_figure",
     "collect",
     "holds",
     "load_ledger",
