@@ -4,9 +4,14 @@ import contextlib
 import fcntl
 import hashlib
 from collections.abc import Callable, Iterator
-from functools import lru_cache, wraps
+from functools import lru_cache, partial, wraps
 from pathlib import Path
 from types import ModuleType
+
+from numba import njit
+
+inner = partial(njit, no_cpython_wrapper=True, no_cfunc_wrapper=True)
+"""As `njit`, for functions that compiled code alone calls: a quarter less to compile."""
 
 
 def persistent(build: Callable[[str, bool], Callable], *modules: ModuleType) -> Callable:

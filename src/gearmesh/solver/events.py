@@ -14,8 +14,7 @@ only where it has a minimum. The two tangents bound that minimum from below, and
 below 0 it is computed.
 """
 
-from numba import njit
-
+from gearmesh.solver.compilation import inner
 from gearmesh.solver.lanes import any_lane, fma, load, magnitude, select, spread, store
 from gearmesh.solver.taylor import REST, evaluate_with_twist, look
 from gearmesh.solver.workspace import (
@@ -44,7 +43,7 @@ _DIP_PLACE = 1e-7
 _MOST_ITERATIONS = 60
 
 
-@njit(inline="always")
+@inner(inline="always")
 def _dip(like, work, guards, side, floor, suspect, low, high):
     """Return the minimum of what is watched between `low` and `high`, and its place."""
     zero = spread(like, 0.0)
@@ -69,7 +68,7 @@ def _dip(like, work, guards, side, floor, suspect, low, high):
     return value, at
 
 
-@njit(inline="never")
+@inner(inline="never")
 def bracket(like, work, guards, side, floor, level):
     """Find the first stretch of the step in which what is watched falls, or `level` is passed.
 
@@ -134,7 +133,7 @@ def bracket(like, work, guards, side, floor, level):
     return found, passed, low, high, guess
 
 
-@njit(inline="never")
+@inner(inline="never")
 def locate(like, work, wanted, turns, side, level, low, high, at):
     """Return where v, or where `turns` is not set y - `level`, passes 0, and y there.
 
@@ -170,7 +169,7 @@ def locate(like, work, wanted, turns, side, level, low, high, at):
     return at, y_there
 
 
-@njit(inline="never")
+@inner(inline="never")
 def find_event(like, work):
     """Write how far the step goes, up to its first event, and what that event is."""
     zero = spread(like, 0.0)

@@ -25,7 +25,6 @@ such a run ends as one that takes too many steps.
 """
 
 import numpy as np
-from numba import njit
 
 from gearmesh.motion import CONTACT_LOSS, INVERSE_MESH, NORMAL_MESH, Z_2, Z_3
 from gearmesh.response import (
@@ -37,6 +36,7 @@ from gearmesh.response import (
     OK,
     STEP_LIMIT,
 )
+from gearmesh.solver.compilation import inner
 from gearmesh.solver.general_roots import (
     TABLE_SHAPE,
     evaluate,
@@ -78,13 +78,13 @@ _NODES = 0.5 * (_NODES + 1.0)
 _WEIGHTS = 0.5 * _WEIGHTS
 
 
-@njit
+@inner
 def _take_value(summary, y):
     summary.y_max = max(summary.y_max, y)
     summary.y_min = min(summary.y_min, y)
 
 
-@njit
+@inner
 def _record_extremum(case, mode, y, extrema, summary):
     if mode.period < case.first_kept:
         return
@@ -100,7 +100,7 @@ def _record_extremum(case, mode, y, extrema, summary):
     _take_value(summary, y)
 
 
-@njit
+@inner
 def _cross(case, mode, summary):
     """Enter the next regime in the direction of motion."""
     mode.level = level(case, mode.regime, mode.direction)
@@ -113,7 +113,7 @@ def _cross(case, mode, summary):
             summary.contact_losses += 1
 
 
-@njit
+@inner
 def _first_sign(case, stretch, mode, fourier, series):
     """Return the sign of the first coefficient of y' that does not vanish, 0 if all do."""
     expand(case, stretch, mode, fourier, series, case.order)
@@ -123,7 +123,7 @@ def _first_sign(case, stretch, mode, fourier, series):
     return 0.0
 
 
-@njit
+@inner
 def _settle_direction(case, stretch, mode, fourier, series, rest, extrema, summary):
     """Find the direction of motion and the regime, and record an extremum where y has turned."""
     if mode.direction * series[V, 0] < 0.0:
@@ -152,13 +152,13 @@ def _settle_direction(case, stretch, mode, fourier, series, rest, extrema, summa
         series[Y, 0] = mode.level
 
 
-@njit
+@inner
 def _needed_force(case, state):
     """Return the F_T that holds z_3' = z_2'."""
     return 0.5 * case.bearing_stiffness * (state[Z_3] - state[Z_2])
 
 
-@njit
+@inner
 def _settle_slip(case, stretch, mode, fourier, state, series):
     """Find the sign of z_3' - z_2', or that the flanks stick."""
     slip = state[6 + Z_3] - state[6 + Z_2]
@@ -184,7 +184,7 @@ def _settle_slip(case, stretch, mode, fourier, state, series):
         mode.slip_sign = 1.0 if needed <= 0.0 else -1.0
 
 
-@njit
+@inner
 def _settle_signs(case, stretch, mode, fourier, state, series):
     """Find both signs of eq. (6); return whether there are any.
 
@@ -207,7 +207,7 @@ def _settle_signs(case, stretch, mode, fourier, state, series):
     return False
 
 
-@njit
+@inner
 def _choose_step(case, series, remaining):
     """Return the step for which the last two terms stay below the tolerance, to the next stop."""
     step = min(remaining, case.longest_step)
@@ -221,7 +221,7 @@ def _choose_step(case, series, remaining):
     return step
 
 
-@njit
+@inner
 def _first(row, degree, step, sign, scaled, table):
     """Return the share of the step up to the first change of sign of the series in `row`."""
     power = 1.0
@@ -231,7 +231,7 @@ def _first(row, degree, step, sign, scaled, table):
     return first_change(scaled, degree, sign, table)
 
 
-@njit
+@inner
 def _first_of_signs(case, stretch, mode, state, step, series, scaled, table):
     """Return the share of the step up to the first change in eq. (6), and what it is."""
     degree = case.order - 1
@@ -253,7 +253,7 @@ def _first_of_signs(case, stretch, mode, state, step, series, scaled, table):
     return (gives_way, _RELEASED) if gives_way < end else (end, event)
 
 
-@njit
+@inner
 def _rounding(state):
     """Return the scale of the rounding errors of y' and y'', with forces of 1 and more."""
     total = 1.0
@@ -262,7 +262,7 @@ def _rounding(state):
     return total
 
 
-@njit
+@inner
 def _rests(row, degree, step, rest):
     """Return whether a series stays below `rest` throughout the step."""
     total = 0.0
@@ -275,7 +275,7 @@ def _rests(row, degree, step, rest):
     return True
 
 
-@njit
+@inner
 def _find_event(case, stretch, mode, state, step, series, rest, scaled, table):
     """Return the share of the step up to its first event, and what that is."""
     end = 1.0
@@ -301,7 +301,7 @@ def _find_event(case, stretch, mode, state, step, series, rest, scaled, table):
     return end, event
 
 
-@njit
+@inner
 def _sample(case, stretch, mode, fourier, series, until, samples, per_period, summary):
     """Write the samples before `until`."""
     first = (mode.period - case.first_kept) * per_period
@@ -324,7 +324,7 @@ def _sample(case, stretch, mode, fourier, series, until, samples, per_period, su
         summary.samples += 1
 
 
-@njit
+@inner
 def _measure(case, mode, series, duration, summary):
     """Add the step to the sums over the kept revolutions."""
     total = 0.0
@@ -338,7 +338,7 @@ def _measure(case, mode, series, duration, summary):
         summary.inverse_time += duration
 
 
-@njit
+@inner
 def _advance(case, mode, state, series, duration):
     """Move the state along the series; forget what was exactly 0 before."""
     if mode.time + duration == mode.time:
@@ -349,7 +349,7 @@ def _advance(case, mode, state, series, duration):
     mode.turns = mode.on_level = mode.on_bracket = mode.released = False
 
 
-@njit
+@inner
 def _follow(case, stretch, mode, state, event, summary):
     """Change what the event changes."""
     if event == _STOPPED:
@@ -367,7 +367,7 @@ def _follow(case, stretch, mode, state, event, summary):
         mode.released = True
 
 
-@njit
+@inner
 def _pass_boundary(case, mode, state, waves, deviation, series, strobes, summary):
     """Enter the next mesh period and write its strobe."""
     mode.period += 1
@@ -380,7 +380,7 @@ def _pass_boundary(case, mode, state, waves, deviation, series, strobes, summary
         _take_value(summary, series[Y, 0])
 
 
-@njit
+@inner
 def _start(case, mode, state, waves, deviation, series, strobes, summary):
     """Set the branches of all laws in the state at the start."""
     begin(case, mode, state, waves, deviation, series)
@@ -398,7 +398,7 @@ def _start(case, mode, state, waves, deviation, series, strobes, summary):
         _take_value(summary, y)
 
 
-@njit
+@inner
 def run(
     cases,
     stretches,

@@ -8,9 +8,9 @@ Experimental Mathematics 14, 2005).
 """
 
 import numpy as np
-from numba import njit
 
 from gearmesh.motion import CONTACT_LOSS, INVERSE_MESH, WHEEL_INERTIA, Y_2, Y_3, Z_2, Z_3
+from gearmesh.solver.compilation import inner
 from gearmesh.solver.general_roots import MAX_DEGREE
 
 CASE = np.dtype(
@@ -99,7 +99,7 @@ ANGLE_3 is Phi_3, ANGLE_2 is Delta - Phi_2.
 SERIES_SHAPE = (N_ROWS, MAX_DEGREE + 1)
 
 
-@njit
+@inner
 def level(case, regime, direction):
     """Return the value of y at which motion in `direction` leaves the regime."""
     if direction > 0.0:
@@ -111,7 +111,7 @@ def level(case, regime, direction):
     return -case.backlash if regime == CONTACT_LOSS else 0.0
 
 
-@njit
+@inner
 def _fill_harmonics(row, order, nu, angle, amplitudes):
     """Fill a row with the series of the sum of a_n cos(n nu t) + b_n sin(n nu t) at `angle`."""
     row[: order + 1] = 0.0
@@ -126,7 +126,7 @@ def _fill_harmonics(row, order, nu, angle, amplitudes):
             value, other = other * scale, -value * scale
 
 
-@njit
+@inner
 def _product(a, b, k):
     """Return the k-th coefficient of the product of two series."""
     total = 0.0
@@ -135,7 +135,7 @@ def _product(a, b, k):
     return total
 
 
-@njit
+@inner
 def _extend_angle(sine, cosine, angle, k):
     """Add the k-th coefficients of the sine and cosine of an angle whose k-th is there."""
     if k == 0:
@@ -148,7 +148,7 @@ def _extend_angle(sine, cosine, angle, k):
     sine[k], cosine[k] = s / k, -c / k
 
 
-@njit
+@inner
 def _extend_relative_motion(case, series, k, mean_angle):
     """Add the k-th coefficient of y, eq. (3), and of the angles that it takes.
 
@@ -176,7 +176,7 @@ def _extend_relative_motion(case, series, k, mean_angle):
         series[V, k - 1] = k * y
 
 
-@njit
+@inner
 def begin(case, mode, state, waves, deviation, series):
     """Write what the series start from: the state, y and y', and the prescribed functions."""
     angle = 2.0 * np.pi * (mode.time / case.period + case.initial_phase)
@@ -199,7 +199,7 @@ def begin(case, mode, state, waves, deviation, series):
         series[BRACKET, 0] = 0.0
 
 
-@njit
+@inner
 def elastic_coefficient(case, stretch, mode, series, fourier, k):
     """Return the k-th coefficient of the elastic force."""
     if mode.regime == CONTACT_LOSS:
@@ -216,7 +216,7 @@ def elastic_coefficient(case, stretch, mode, series, fourier, k):
     return total
 
 
-@njit
+@inner
 def _damping(law, direction, series, k):
     """Return the k-th coefficient of the damping force of eq. (7)."""
     force = law[0] * series[V, k]
@@ -228,7 +228,7 @@ def _damping(law, direction, series, k):
     return force
 
 
-@njit
+@inner
 def _friction(case, stretch, mode, series, k):
     """Return the k-th coefficients of F_T and of the moments on both wheels over R_b."""
     if stretch.gamma == 0.0:
@@ -251,7 +251,7 @@ def _friction(case, stretch, mode, series, k):
     return force, -(case.middle_arm * force + shift), -(case.middle_arm * force - shift)
 
 
-@njit
+@inner
 def _lever(case, series, wheel, k):
     """Return the k-th coefficient of N dy/dphi over R_b for wheel 3 or 2."""
     force = series[NORMAL, k]
@@ -265,7 +265,7 @@ def _lever(case, series, wheel, k):
     return force
 
 
-@njit
+@inner
 def expand(case, stretch, mode, fourier, series, order):
     """Fill the series up to `order`, from what `begin` wrote."""
     law = case.lubricant if mode.regime == CONTACT_LOSS else case.material

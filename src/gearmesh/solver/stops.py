@@ -5,9 +5,9 @@ afterwards depends on its regime, its stretch and its run alone.
 """
 
 import numpy as np
-from numba import njit
 
 from gearmesh.motion import CONTACT_LOSS, INVERSE_MESH, NORMAL_MESH
+from gearmesh.solver.compilation import inner
 from gearmesh.solver.lanes import load, select, spread, store
 from gearmesh.solver.workspace import (
     BACKLASH,
@@ -41,7 +41,7 @@ from gearmesh.solver.workspace import (
 )
 
 
-@njit(inline="never")
+@inner(inline="never")
 def cross_level(like, work, crossed):
     """Change the regime of the lanes in `crossed` and put their y on the level exactly."""
     zero = spread(like, 0.0)
@@ -58,7 +58,7 @@ def cross_level(like, work, crossed):
     store(work, CONTACT_LOSSES, select(loses, losses + load(like, work, KEPT), losses))
 
 
-@njit(inline="never")
+@inner(inline="never")
 def next_segment(like, work, stopped):
     """Take the lanes in `stopped` to their next stretch; return those that begin a period."""
     zero = spread(like, 0.0)
@@ -77,7 +77,7 @@ def next_segment(like, work, stopped):
     return around
 
 
-@njit(inline="always")
+@inner(inline="always")
 def _of_segment(like, work, rows):
     """Return what belongs to the stretch of each lane, out of MAX_SEGMENTS rows."""
     segment = load(like, work, SEGMENT)
@@ -87,7 +87,7 @@ def _of_segment(like, work, rows):
     return value
 
 
-@njit(inline="never")
+@inner(inline="never")
 def enter(like, work):
     """Write the coefficients and levels that belong to each lane's regime and stretch."""
     zero = spread(like, 0.0)

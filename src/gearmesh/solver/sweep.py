@@ -7,7 +7,6 @@ to all lanes; what is recorded of a run, and where it begins and ends, is told l
 """
 
 import numpy as np
-from numba import njit
 
 from gearmesh.motion import CONTACT_LOSS, INVERSE_MESH, NORMAL_MESH
 from gearmesh.response import (
@@ -18,6 +17,7 @@ from gearmesh.response import (
     NOT_FINITE,
     STEP_LIMIT,
 )
+from gearmesh.solver.compilation import inner
 from gearmesh.solver.events import CROSSED, STOPPED, TURNED, find_event
 from gearmesh.solver.lanes import (
     any_lane,
@@ -130,30 +130,30 @@ _NODES = 0.5 * (_NODES + 1.0)
 _WEIGHTS = 0.5 * _WEIGHTS
 
 
-@njit
+@inner
 def _set(work, width, row, lane, value):
     work[row * width + lane] = value
 
 
-@njit
+@inner
 def _get(work, width, row, lane):
     return work[row * width + lane]
 
 
-@njit
+@inner
 def _take_value(summary, y):
     summary.y_max = max(summary.y_max, y)
     summary.y_min = min(summary.y_min, y)
 
 
-@njit
+@inner
 def _record_strobe(strobes, index, boundary, y, v):
     if index < strobes.shape[0]:
         strobes[index, boundary, 0] = y
         strobes[index, boundary, 1] = v
 
 
-@njit
+@inner
 def _begin(work, width, lane, runs, summaries, strobes, index):
     """Put run `index` into the lane; `enter` has to follow."""
     run = runs[index]
@@ -199,7 +199,7 @@ def _begin(work, width, lane, runs, summaries, strobes, index):
     _record_strobe(strobes, index, 0, y, v)
 
 
-@njit
+@inner
 def _idle(work, width, lane):
     """Leave the lane without a run: nothing moves in it, and it never stops."""
     for row in range(N_ROWS):
@@ -211,7 +211,7 @@ def _idle(work, width, lane):
     _set(work, width, REMAINING, lane, np.inf)
 
 
-@njit
+@inner
 def _pass_boundary(work, width, lane, index, summaries, strobes):
     """Record what belongs to the boundary of a mesh period."""
     period = _get(work, width, PERIOD, lane)
@@ -224,7 +224,7 @@ def _pass_boundary(work, width, lane, index, summaries, strobes):
         _take_value(summaries[index], y)
 
 
-@njit
+@inner
 def _finish(work, width, lane, summary):
     """Record what was measured on a run, and why it ends."""
     y, v = _get(work, width, Y, lane), _get(work, width, Y + 1, lane)
@@ -244,7 +244,7 @@ def _finish(work, width, lane, summary):
         summary.final[2], summary.final[3] = b, rate
 
 
-@njit
+@inner
 def _turn(like, work, runs, indices, summaries, extrema):
     """Find the direction of motion, and record an extremum where it has changed."""
     width = width_of(like)
@@ -274,7 +274,7 @@ def _turn(like, work, runs, indices, summaries, extrema):
         summary.extrema = n + 1
 
 
-@njit
+@inner
 def _highest_power(like, work):
     """Return the highest power of v in the damping that acts in some lane."""
     zero = spread(like, 0.0)
@@ -283,7 +283,7 @@ def _highest_power(like, work):
     return 2 if any_lane(~(load(like, work, QUADRATIC) == zero)) else 1
 
 
-@njit
+@inner
 def _integrate_square(like, work):
     """Add the integral of y^2 over the step that is taken (Gauss-Legendre, 6 nodes)."""
     end = load(like, work, TAKEN)
@@ -296,7 +296,7 @@ def _integrate_square(like, work):
     store(work, SQUARE_INTEGRAL, integral)
 
 
-@njit
+@inner
 def _take_step(like, work):
     """Move every lane to the end of its step."""
     zero = spread(like, 0.0)
@@ -327,7 +327,7 @@ def _take_step(like, work):
     store(work, INVERSE_TIME, load(like, work, INVERSE_TIME) + inverse)
 
 
-@njit
+@inner
 def _settle(like, work, indices, summaries, strobes):
     """Follow what ended the steps; return the lanes whose runs are over, as bits."""
     width = width_of(like)
@@ -352,7 +352,7 @@ def _settle(like, work, indices, summaries, strobes):
     return lane_bits(over & (load(like, work, LOAD) > spread(like, 0.0)))
 
 
-@njit
+@inner
 def _sample(work, width, lane, run, samples, per_period):
     """Write the samples of y, v and a that fall on the step of one lane, a few at a time."""
     period = int(_get(work, width, PERIOD, lane))
@@ -387,7 +387,7 @@ def _sample(work, width, lane, run, samples, per_period):
         store_at(samples[2], begin + i, half_a * 2.0)
 
 
-@njit
+@inner
 def sweep(like, work, runs, summaries, strobes, extrema, samples, samples_per_period):
     """Integrate all `runs` (see `RUN`); results stand at the index of the run.
 

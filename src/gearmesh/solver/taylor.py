@@ -13,8 +13,7 @@ solution is analytic and its Taylor coefficients follow from a recurrence with a
 products (Jorba and Zou, Experimental Mathematics 14, 2005).
 """
 
-from numba import njit
-
+from gearmesh.solver.compilation import inner
 from gearmesh.solver.lanes import (
     COARSENESS,
     coarse_exp2,
@@ -63,7 +62,7 @@ within its convergence: such a mode would grow from rounding errors unseen by th
 """
 
 
-@njit(inline="never")
+@inner(inline="never")
 def direction(like, work):
     """Return the sign of v, where v rests that of the acceleration, where both rest the last."""
     v = load(like, work, Y + 1)
@@ -186,7 +185,7 @@ _expand_quadratic = unrolled(lambda rows: _expand(rows, 2))
 _expand_cubic = unrolled(lambda rows: _expand(rows, 3))
 
 
-@njit(inline="never")
+@inner(inline="never")
 def expand(like, work, powers):
     """Fill the series from the state; `powers` is the highest power of v in any lane's damping."""
     if powers == 1:
@@ -197,7 +196,7 @@ def expand(like, work, powers):
         _expand_cubic(like, work)
 
 
-@njit(inline="never")
+@inner(inline="never")
 def choose_step(like, work):
     """Write the step at which the first terms left out reach the tolerance, to the next stop.
 
@@ -235,7 +234,7 @@ def _look(rows):
 look = unrolled(_look)
 
 
-@njit(inline="always")
+@inner(inline="always")
 def evaluate(like, work, s):
     """Return y at `s`."""
     value = load(like, work, Y + ORDER)
@@ -244,7 +243,7 @@ def evaluate(like, work, s):
     return value
 
 
-@njit(inline="always")
+@inner(inline="always")
 def evaluate_with_slope(like, work, series, s):
     """Return the polynomial from row `series`, and its slope, at `s`."""
     value = load(like, work, series + ORDER)
@@ -255,7 +254,7 @@ def evaluate_with_slope(like, work, series, s):
     return value, slope
 
 
-@njit(inline="always")
+@inner(inline="always")
 def evaluate_with_twist(like, work, s):
     """Return y and its first three Taylor coefficients at `s`."""
     value = load(like, work, Y + ORDER)
