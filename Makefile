@@ -25,7 +25,7 @@ reproduce: $(STAMP) ## the paper: cases, datasets, figures, ledger and report
 	@cat results/verdict.txt
 
 test: $(STAMP) ## the whole test suite
-	$(BIN)/python -m pytest -n 2 --dist loadfile
+	$(BIN)/python -m pytest -n 2 --dist loadfile --no-loadscope-reorder
 
 bench: $(BENCH_STAMP) ## the benchmarks, peers side by side
 	$(BIN)/python -m benchmarks
