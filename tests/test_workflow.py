@@ -118,7 +118,7 @@ INCREMENTS = {
     "datasets": ("src/gearmesh/datasets.py", '"""', '""" ', {*AFTER_CASES}),
     "physics": ("src/gearmesh/friction.py", '"""', '""" ', STATED),
     "solver": ("src/gearmesh/integrator.py", '"""', '""" ', EVERYTHING),
-    "tolerance": ("config/paper.yaml", "tolerance: 1e-10", "tolerance: 1e-9", STATED),
+    "tolerance": ("config/paper.yaml", "tolerance: 1e-10", "tolerance: 1e-9", EVERYTHING),
     "parameter": ("config/paper.yaml", "backlash: 80 um", "backlash: 81 um", STATED),
     "units": ("config/paper.yaml", "backlash: 80 um", "backlash: 0.080 mm", set()),
     "reason": ("config/paper.yaml", "reasons: # one", "reasons: # just one", set()),

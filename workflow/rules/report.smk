@@ -1,5 +1,7 @@
 # The report: its page, the notebooks as pages beside it, and the captions of `snakemake --report`.
 
+from gearmesh.identification.design import stated
+
 REPORT = pipeline.script("build_report")
 SHOW = pipeline.script("show_notebooks")
 IDENTIFIED = pipeline.script("draw_identified")
@@ -17,7 +19,7 @@ rule identified_figures:
     # As fig1.
     priority: 2
     params:
-        recipe=PLAN.recipe,
+        shown=str(stated(PLAN.study.parameters)),
     shell:
         'python workflow/scripts/draw_identified.py "$STUDY" 2>&1 | tee {log}'
 
