@@ -4,9 +4,9 @@ from pathlib import Path
 
 import numpy as np
 
-from gearmesh.configuration import load_study
-from gearmesh.damping import variant
-from gearmesh.motion import Problem
+from gearmesh.model.damping import variant
+from gearmesh.model.motion import Problem
+from gearmesh.study.configuration import load_study
 
 LETTERS = "bcd"
 SYMBOLS = ("material", "lubricant", "both")

@@ -10,8 +10,8 @@ from hypothesis import settings
 from project import Project
 from small_run import compute
 
-from gearmesh.configuration import Study, load_study
-from gearmesh.parameters import Parameters
+from gearmesh.study.configuration import Study, load_study
+from gearmesh.study.parameters import Parameters
 
 # Compilation and a busy machine make single examples slow; tests never judge times.
 settings.register_profile("gearmesh", deadline=None, derandomize=True)

@@ -1,6 +1,6 @@
 """Slow and simple solutions of the equations of motion, to check the solvers against.
 
-They take the right-hand side of `gearmesh.motion` and methods that the solvers do not use:
+They take the right-hand side of `gearmesh.model.motion` and methods that the solvers do not use:
 SciPy's DOP853 between events that SciPy locates, and matrix exponentials.
 """
 
@@ -11,9 +11,9 @@ import numpy as np
 from scipy.integrate import solve_ivp
 from scipy.linalg import expm
 
-from gearmesh import stiffness
-from gearmesh.friction import follows_run_out, mesh_gamma
-from gearmesh.motion import (
+from gearmesh.model import stiffness
+from gearmesh.model.friction import follows_run_out, mesh_gamma
+from gearmesh.model.motion import (
     CONTACT_LOSS,
     INVERSE_MESH,
     NORMAL_MESH,

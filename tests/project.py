@@ -6,6 +6,7 @@ import shutil
 import signal
 import subprocess
 import sys
+import time
 from pathlib import Path
 
 ROOT = Path(__file__).parents[1]
@@ -166,3 +167,12 @@ def end(process: subprocess.Popen, how: signal.Signals) -> None:
     """Send a signal to a run and all that it started, and wait for its end."""
     os.killpg(process.pid, how)
     process.communicate(timeout=PATIENCE)
+
+
+def wait_for(condition, process: subprocess.Popen) -> object:
+    """Wait until something is there, or the run is over."""
+    while process.poll() is None:
+        if found := condition():
+            return found
+        time.sleep(0.005)
+    return condition()

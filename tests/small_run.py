@@ -2,9 +2,9 @@
 
 from pathlib import Path
 
-from gearmesh import batches, casefile, datasets, paths
-from gearmesh.configuration import Study
-from gearmesh.integrator import simulate
+from gearmesh.data import batches, casefile, datasets, paths
+from gearmesh.solvers.simulation import simulate
+from gearmesh.study.configuration import Study
 
 
 def compute(study: Study, root: Path) -> None:

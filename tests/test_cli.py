@@ -8,7 +8,7 @@ import sys
 import pytest
 
 from gearmesh import __version__
-from gearmesh.damping import VARIANTS
+from gearmesh.model.damping import VARIANTS
 
 
 @pytest.fixture

@@ -4,8 +4,8 @@ from collections.abc import Sequence
 
 from benchmarks.outcome import SAMPLES_PER_PERIOD, Outcome
 from benchmarks.reduced import periods
-from gearmesh.integrator import simulate
-from gearmesh.motion import Problem
+from gearmesh.model.motion import Problem
+from gearmesh.solvers.simulation import simulate
 
 
 def solve(problems: Sequence[Problem], tolerance: float) -> list[Outcome]:

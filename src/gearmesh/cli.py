@@ -10,7 +10,8 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import NoReturn
 
-from gearmesh import __version__, paths
+from gearmesh import __version__
+from gearmesh.data import paths
 from gearmesh.errors import InputError
 
 BAD_INPUT = 2
@@ -86,7 +87,7 @@ def _parser() -> _Parser:
 
 
 def _load(options: argparse.Namespace):
-    from gearmesh.configuration import load_study
+    from gearmesh.study.configuration import load_study
 
     path = options.config or paths.PAPER
     if options.config is None and not path.exists():
@@ -95,8 +96,8 @@ def _load(options: argparse.Namespace):
 
 
 def _simulate(options: argparse.Namespace) -> int:
-    from gearmesh.configuration import Case, read_nu
-    from gearmesh.damping import variant
+    from gearmesh.model.damping import variant
+    from gearmesh.study.configuration import Case, read_nu
 
     try:
         nu = read_nu(options.nu)
@@ -106,8 +107,8 @@ def _simulate(options: argparse.Namespace) -> int:
     parameters = _load(options).parameters
     _check_output(options.output)
 
-    from gearmesh import casefile
-    from gearmesh.integrator import simulate
+    from gearmesh.data import casefile
+    from gearmesh.solvers.simulation import simulate
 
     [response] = simulate(
         [parameters.problem(case.variant, case.nu)],
@@ -142,7 +143,7 @@ def _check_output(path: Path) -> None:
 
 
 def _variants(options: argparse.Namespace) -> int:
-    from gearmesh.damping import VARIANTS
+    from gearmesh.model.damping import VARIANTS
 
     head = ("name", "mark", "k1", "k2", "k3", "k1m", "k2m", "k3m", "damping")
     rows = [
@@ -161,7 +162,7 @@ def _variants(options: argparse.Namespace) -> int:
 
 
 def _parameters(options: argparse.Namespace) -> int:
-    from gearmesh.parameters import DERIVATIONS, KINDS, rows
+    from gearmesh.study.parameters import DERIVATIONS, KINDS, rows
 
     study = _load(options)
     table = [("parameter", "symbol", "value", "unit", "kind", "meaning, or reason")]

@@ -10,8 +10,8 @@ SHOWN = {
     "fig6": ["c-material", "c-material-5x"],
     "fig7": ["c-material", "c-material-5x"],
 }
-STYLE = "src/gearmesh/figures/gearmesh.mplstyle"
-LOOKS = [STYLE, "src/gearmesh/templates/claims.html.j2"]
+STYLE = "src/gearmesh/paper/figures/gearmesh.mplstyle"
+LOOKS = [STYLE, "src/gearmesh/report/templates/claims.html.j2"]
 
 
 rule thresholds:

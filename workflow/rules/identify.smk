@@ -1,7 +1,7 @@
 # Infer what the paper does not print: samples of the open parameters, in batches; focused designs
 # fill a box around the best of what came before. Nothing here is part of the default target, which
 # reads the committed table config/identified.yaml.
-from gearmesh import provenance
+from gearmesh.data import provenance
 from gearmesh.identification.design import left_alone
 
 MEASURE = pipeline.script("identify_batch")

@@ -27,7 +27,7 @@ rule identified_figures:
 rule notebook_pages:
     input:
         sources=pipeline.sources(SHOW),
-        template="src/gearmesh/templates/notebook.html.j2",
+        template="src/gearmesh/report/templates/notebook.html.j2",
         notebooks=[paths.executed_notebook(name) for name in paths.NOTEBOOK_NAMES],
     output:
         [paths.notebook_page(name) for name in paths.NOTEBOOK_NAMES],

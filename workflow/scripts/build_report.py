@@ -3,9 +3,9 @@
 import argparse
 from pathlib import Path
 
-from gearmesh.configuration import load_study
-from gearmesh.job import job
-from gearmesh.report import write_report
+from gearmesh.pipeline.job import job
+from gearmesh.report.page import write_report
+from gearmesh.study.configuration import load_study
 
 
 def main() -> None:

@@ -3,11 +3,11 @@
 import argparse
 from pathlib import Path
 
-from gearmesh import paths
-from gearmesh.claims import Evidence, load_ledger
-from gearmesh.claims.checking import check_figure
-from gearmesh.configuration import load_study
-from gearmesh.job import job
+from gearmesh.data import paths
+from gearmesh.paper.claims import Evidence, load_ledger
+from gearmesh.paper.claims.checking import check_figure
+from gearmesh.pipeline.job import job
+from gearmesh.study.configuration import load_study
 
 
 def main() -> None:

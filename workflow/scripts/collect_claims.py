@@ -3,9 +3,9 @@
 import argparse
 from pathlib import Path
 
-from gearmesh import paths
-from gearmesh.claims import collect, load_ledger
-from gearmesh.job import job
+from gearmesh.data import paths
+from gearmesh.paper.claims import collect, load_ledger
+from gearmesh.pipeline.job import job
 
 
 def main() -> None:

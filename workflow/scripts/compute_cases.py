@@ -10,12 +10,12 @@ import time
 from collections.abc import Iterable, Sequence
 from pathlib import Path
 
-from gearmesh import batches, casefile, paths
-from gearmesh.batches import Batch
-from gearmesh.casefile import Record
-from gearmesh.configuration import Case, Study, load_study
+from gearmesh.data import batches, casefile, paths
+from gearmesh.data.batches import Batch
+from gearmesh.data.casefile import Record
 from gearmesh.errors import InputError
-from gearmesh.job import job, note, part, progress, tell
+from gearmesh.pipeline.job import job, note, part, progress, tell
+from gearmesh.study.configuration import Case, Study, load_study
 
 CHUNK = 64
 """Cases that are integrated in one go: enough to fill the lanes, few enough to show progress."""
@@ -80,7 +80,7 @@ def _integrate(study: Study, cases: Sequence[Case]) -> list[Record]:
     """Integrate cases that are alike, and write their files."""
     # Imported here: a job that finds everything done need not load compiled code.
     with part("loading"):
-        from gearmesh.integrator import simulate
+        from gearmesh.solvers.simulation import simulate
 
     parameters = study.parameters
     problems = [parameters.problem(case.variant, case.nu) for case in cases]

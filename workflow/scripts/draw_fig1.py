@@ -3,8 +3,8 @@
 import argparse
 from pathlib import Path
 
-from gearmesh.figures import canvas, fig1
-from gearmesh.job import job
+from gearmesh.paper.figures import canvas, fig1
+from gearmesh.pipeline.job import job
 
 
 def main() -> None:

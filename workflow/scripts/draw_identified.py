@@ -3,13 +3,13 @@
 import argparse
 from pathlib import Path
 
-from gearmesh.configuration import load_study
-from gearmesh.figures import canvas
 from gearmesh.identification import layout, table
 from gearmesh.identification.design import stated
 from gearmesh.identification.figures import draw_regions, draw_sensitivity
 from gearmesh.identification.settings import load_settings
-from gearmesh.job import job
+from gearmesh.paper.figures import canvas
+from gearmesh.pipeline.job import job
+from gearmesh.study.configuration import load_study
 
 
 def main() -> None:

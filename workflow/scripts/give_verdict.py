@@ -3,9 +3,10 @@
 import sys
 from collections import Counter
 
-from gearmesh import paths
-from gearmesh.claims import Entry, read_entries, verdict
-from gearmesh.job import job, note, write_text
+from gearmesh.data import paths
+from gearmesh.data.writing import write_text
+from gearmesh.paper.claims import Entry, read_entries, verdict
+from gearmesh.pipeline.job import job, note
 
 UNEXPECTED = 3
 """Exit status when a claim has another status than the ledger expects."""

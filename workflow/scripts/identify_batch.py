@@ -4,12 +4,12 @@ import argparse
 import warnings
 from pathlib import Path
 
-from gearmesh.configuration import load_study
 from gearmesh.identification import boxes, layout, store
 from gearmesh.identification.design import unit_points
 from gearmesh.identification.settings import load_settings
 from gearmesh.identification.survey import compute
-from gearmesh.job import job, note, tell
+from gearmesh.pipeline.job import job, note, tell
+from gearmesh.study.configuration import load_study
 
 
 def main() -> None:

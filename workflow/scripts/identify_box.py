@@ -3,12 +3,12 @@
 import argparse
 from pathlib import Path
 
-from gearmesh import paths
-from gearmesh.claims import load_ledger
+from gearmesh.data import paths
 from gearmesh.identification import boxes, focus, layout, store
 from gearmesh.identification.settings import load_settings
 from gearmesh.identification.survey import tested_claims
-from gearmesh.job import job
+from gearmesh.paper.claims import load_ledger
+from gearmesh.pipeline.job import job
 
 
 def main() -> None:

@@ -4,7 +4,7 @@ import argparse
 from pathlib import Path
 
 from gearmesh.identification import layout, store
-from gearmesh.job import job
+from gearmesh.pipeline.job import job
 
 
 def main() -> None:

@@ -3,13 +3,13 @@
 import argparse
 from pathlib import Path
 
-from gearmesh import paths
-from gearmesh.claims import load_ledger
+from gearmesh.data import paths
 from gearmesh.identification import boxes, layout, store, table
 from gearmesh.identification.findings import Analysis, findings
 from gearmesh.identification.settings import load_settings
 from gearmesh.identification.survey import tested_claims
-from gearmesh.job import job, tell
+from gearmesh.paper.claims import load_ledger
+from gearmesh.pipeline.job import job, tell
 
 
 def main() -> None:

@@ -4,10 +4,11 @@ import argparse
 import json
 from pathlib import Path
 
-from gearmesh import paths
-from gearmesh.configuration import load_study
-from gearmesh.job import job, write_text
-from gearmesh.thresholds import locate
+from gearmesh.data import paths
+from gearmesh.data.writing import write_text
+from gearmesh.paper.thresholds import locate
+from gearmesh.pipeline.job import job
+from gearmesh.study.configuration import load_study
 
 
 def main() -> None:

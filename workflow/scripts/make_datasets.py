@@ -3,10 +3,10 @@
 import argparse
 from pathlib import Path
 
-from gearmesh import paths
-from gearmesh.configuration import load_study
-from gearmesh.datasets import write_datasets
-from gearmesh.job import job
+from gearmesh.data import paths
+from gearmesh.data.datasets import write_datasets
+from gearmesh.pipeline.job import job
+from gearmesh.study.configuration import load_study
 
 
 def main() -> None:

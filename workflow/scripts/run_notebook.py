@@ -16,7 +16,7 @@ import papermill
 from nbclient.exceptions import DeadKernelError
 from papermill.exceptions import PapermillExecutionError
 
-from gearmesh.job import job, tell
+from gearmesh.pipeline.job import job, tell
 
 START_TIMEOUT = 60
 """Seconds that a kernel may take to start: many may start at once."""

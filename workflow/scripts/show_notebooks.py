@@ -1,8 +1,9 @@
 """Write the executed notebooks as pages of the report."""
 
-from gearmesh import paths
-from gearmesh.job import job, write_text
-from gearmesh.notebook_page import notebook_page
+from gearmesh.data import paths
+from gearmesh.data.writing import write_text
+from gearmesh.pipeline.job import job
+from gearmesh.report.notebook_page import notebook_page
 
 
 def main() -> None:

@@ -1,9 +1,9 @@
 """Responses of one sample against nu_s: separate runs, or sweeps up or down.
 
-The ledger's own searches (`gearmesh.thresholds`) run on these courses. They look less closely at
-first than for the study itself, and narrow what they find to ± 0.001; where a coarse look is
-enough depends on the variant. All first looks of many samples are run in one go, sweeps step by
-step, so that the solver's lanes are never empty.
+The ledger's own searches (`gearmesh.paper.thresholds`) run on these courses. They look less
+closely at first than for the study itself, and narrow what they find to ± 0.001; where a coarse
+look is enough depends on the variant. All first looks of many samples are run in one go, sweeps
+step by step, so that the solver's lanes are never empty.
 """
 
 from collections.abc import Iterable, Sequence
@@ -12,17 +12,17 @@ from dataclasses import replace
 import numpy as np
 
 from gearmesh.identification.design import Sample, parameters_of
-from gearmesh.integrator import simulate
-from gearmesh.motion import Problem
-from gearmesh.parameters import Parameters
-from gearmesh.response import Response
-from gearmesh.thresholds import FIRST, LAST, LOOPS_FROM, Courses
+from gearmesh.model.motion import Problem
+from gearmesh.paper.thresholds import FIRST, LAST, LOOPS_FROM, Courses
+from gearmesh.solvers.response import Response
+from gearmesh.solvers.simulation import simulate
+from gearmesh.study.parameters import Parameters
 
 ACCURACY = 1e-3
 """Thresholds in nu_s are located to this."""
 
-# A ninth of the first decides between jump and slope (`gearmesh.thresholds.JUMP_WIDTH`), ninths
-# of the others locate to `ACCURACY`: one refinement, eight runs, is enough.
+# A ninth of the first decides between jump and slope (`gearmesh.paper.thresholds.JUMP_WIDTH`),
+# ninths of the others locate to `ACCURACY`: one refinement, eight runs, is enough.
 _FINE, _MEDIUM, _COARSE, _COARSEST = 0.004, 0.01, 0.015, 0.02
 _JUMPS_UP_TO = 0.92
 

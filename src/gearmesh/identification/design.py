@@ -5,7 +5,7 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from gearmesh.identification.settings import KINDS, Design, Settings
-from gearmesh.parameters import Parameters
+from gearmesh.study.parameters import Parameters
 
 Sample = dict[str, float | str]
 """Factor -> value; all lengths in static deflections, masses in m_red, stiffnesses in C_s."""

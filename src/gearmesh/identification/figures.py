@@ -10,9 +10,9 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
-from gearmesh.figures import palette
-from gearmesh.figures.canvas import WIDTH, styled
 from gearmesh.identification.settings import Range
+from gearmesh.paper.figures import palette
+from gearmesh.paper.figures.canvas import WIDTH, styled
 
 SYMBOLS = {
     "backlash": "$s/y_{st}$",

@@ -6,7 +6,6 @@ from functools import cached_property
 
 import numpy as np
 
-from gearmesh.claims import REPRODUCED, Claim
 from gearmesh.identification import inference, prediction, sensitivity, synthetic
 from gearmesh.identification.boxes import Box, prior_weights
 from gearmesh.identification.inference import ENOUGH, Fit, effective_size
@@ -16,6 +15,7 @@ from gearmesh.identification.wording import (
     statements,
     weight_of_claims,
 )
+from gearmesh.paper.claims import REPRODUCED, Claim
 
 SURVEY, NATURAL, TRUTH = "survey", "natural", "truth"
 """Even designs: the plausible space, the natural reading, synthetic papers."""

@@ -2,7 +2,7 @@
 
 from pathlib import Path
 
-from gearmesh import paths
+from gearmesh.data import paths
 from gearmesh.identification.settings import Settings
 
 SETTINGS = paths.CONFIG / "identify.yaml"

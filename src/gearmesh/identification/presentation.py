@@ -4,11 +4,11 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from gearmesh.claims import REPRODUCED, Claim
 from gearmesh.identification.design import Sample, stated
 from gearmesh.identification.settings import FACTORS, Range, Settings
-from gearmesh.parameters import Parameters
-from gearmesh.presentation import environment, number
+from gearmesh.paper.claims import REPRODUCED, Claim
+from gearmesh.report.presentation import environment, number
+from gearmesh.study.parameters import Parameters
 
 ANY = "any"
 """What is said of a parameter that the claims say nothing about."""

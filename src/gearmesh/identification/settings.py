@@ -7,8 +7,8 @@ from typing import Literal, Self
 
 from pydantic import Field, field_validator, model_validator
 
-from gearmesh import yamlfile
-from gearmesh.schema import Section, validate
+from gearmesh.study import yamlfile
+from gearmesh.study.schema import Section, validate
 
 KINDS = ("separate", "up", "down")
 """Kinds of run: each tuning from rest, or from the end of its lower or its higher neighbour."""

@@ -7,13 +7,13 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from gearmesh.claims import Claim
-from gearmesh.figures import palette
-from gearmesh.figures.canvas import WIDTH, styled
 from gearmesh.identification.figures import SYMBOLS, TICKS
 from gearmesh.identification.store import Samples
 from gearmesh.identification.wording import statements, weight_of_claims
-from gearmesh.thresholds import FIRST, LAST
+from gearmesh.paper.claims import Claim
+from gearmesh.paper.figures import palette
+from gearmesh.paper.figures.canvas import WIDTH, styled
+from gearmesh.paper.thresholds import FIRST, LAST
 
 
 @styled

@@ -6,16 +6,16 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from gearmesh import casefile
-from gearmesh.claims.checking import MEASURES
-from gearmesh.claims.evidence import Evidence, NotInStudy
-from gearmesh.claims.fig6 import LESS, MORE, NU_OF_THE_CROSSING
+from gearmesh.data import casefile
 from gearmesh.identification import store
 from gearmesh.identification.courses import SampledCourses, look
 from gearmesh.identification.design import Sample, parameters_of, samples
 from gearmesh.identification.settings import Settings
-from gearmesh.parameters import Parameters
-from gearmesh.thresholds import NONLINEAR, STROBED_AT, locate_on
+from gearmesh.paper.claims.checking import MEASURES
+from gearmesh.paper.claims.evidence import Evidence, NotInStudy
+from gearmesh.paper.claims.fig6 import LESS, MORE, NU_OF_THE_CROSSING
+from gearmesh.paper.thresholds import NONLINEAR, STROBED_AT, locate_on
+from gearmesh.study.parameters import Parameters
 
 VARIANTS = (
     *(f"{letter}-lubricant" for letter in ("b", *NONLINEAR)),

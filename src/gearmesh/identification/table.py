@@ -5,10 +5,10 @@ from typing import Any
 
 import yaml
 
-from gearmesh import yamlfile
+from gearmesh.data.writing import write_text
 from gearmesh.errors import InputError
 from gearmesh.identification.layout import IDENTIFIED
-from gearmesh.job import write_text
+from gearmesh.study import yamlfile
 
 HEADER = """\
 # What the claims of the paper say about what it does not print; docs/identification.md tells how

@@ -1,0 +1,191 @@
+"""Batches: the cases of one job, and the file that hands them on to the datasets.
+
+A job computes a batch of cases and writes them, one after the other, into one batch file. The
+datasets are made of these few files. The thousands of case files are for readers; a study that is
+too large for them (`study.case_files: false`) does without and loses nothing else.
+"""
+
+import hashlib
+import itertools
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import netCDF4
+import numpy as np
+
+from gearmesh.data import casefile
+from gearmesh.data.casefile import FIELDS, Field, Record
+from gearmesh.errors import InputError
+from gearmesh.study.configuration import Case
+from gearmesh.study.parameters import Parameters
+
+STORED = tuple((field, field.relative or field.name) for field in FIELDS)
+"""Fields and names of the variables of a batch file: lengths in static deflections only."""
+
+
+@dataclass(frozen=True, slots=True)
+class Batch:
+    """Cases that one job computes."""
+
+    index: int
+    cases: tuple[Case, ...]
+
+    @property
+    def name(self) -> str:
+        """Name of the batch and of its file."""
+        return f"batch-{self.index:04d}"
+
+
+@dataclass(slots=True)
+class Content:
+    """What a batch file holds.
+
+    Attributes
+    ----------
+    variants : list of str, one for each case
+        Names of the variants.
+    nu : ndarray, shape (n_cases,)
+        Tunings nu_s.
+    counts : ndarray, shape (n_cases,)
+        Numbers of extrema.
+    columns : dict of str to ndarray
+        Scalars (n_cases,), strobes (n_cases, n_boundaries), and the extrema of all cases one
+        after the other.
+    """
+
+    variants: list[str]
+    nu: np.ndarray
+    counts: np.ndarray
+    columns: dict[str, np.ndarray]
+
+    def split(self) -> Iterator["Content"]:
+        """Yield the stretches of cases of one variant."""
+        first = 0
+        for _, group in itertools.groupby(self.variants):
+            last = first + len(list(group))
+            yield self.part(first, last)
+            first = last
+
+    def part(self, first: int, last: int) -> "Content":
+        """Return the cases from `first` up to, but not including, `last`."""
+        ends = np.concatenate([[0], np.cumsum(self.counts)])
+        cases, extrema = slice(first, last), slice(ends[first], ends[last])
+        columns = {
+            name: self.columns[name][extrema if field.dimension == "extremum" else cases]
+            for field, name in STORED
+        }
+        return Content(self.variants[cases], self.nu[cases], self.counts[cases], columns)
+
+
+def partition(cases: Sequence[Case], size: int) -> list[Batch]:
+    """Cut a list of cases into batches of about the same size, `size` at the most."""
+    number = -(-len(cases) // size)
+    ends = [len(cases) * i // number for i in range(number + 1)]
+    pieces = itertools.pairwise(ends)
+    return [Batch(i, tuple(cases[start:end])) for i, (start, end) in enumerate(pieces)]
+
+
+def attributes(parameters: Parameters, batch: Batch) -> dict[str, str | float]:
+    """Return the global attributes of a batch file."""
+    digests = "".join(casefile.case_digest(parameters, case) for case in batch.cases)
+    return {
+        "Conventions": "CF-1.11",
+        "title": f"gear mesh, {len(batch.cases)} cases",
+        "cases_sha256": hashlib.sha256(digests.encode()).hexdigest(),
+        **casefile.common_attributes(parameters),
+    }
+
+
+def write_batch(
+    path: Path, attributes: Mapping[str, str | float], batch: Batch, records: Sequence[Record]
+) -> None:
+    """Write a batch file, whole or not at all.
+
+    Parameters
+    ----------
+    path : Path
+        File.
+    attributes : mapping
+        See `attributes`.
+    batch : Batch
+        The cases.
+    records : sequence of Record
+        What was computed, in the order of the cases.
+    """
+    names = list(dict.fromkeys(case.variant.name for case in batch.cases))
+    index = Field("variant", "", "1", "damping variant", "i2", dict(enumerate(names)))
+    with casefile.sealed(path, casefile.recipe(attributes)) as file:
+        file.setncatts(attributes)
+        file.createDimension("case", len(records))
+        values = {
+            "variant": [names.index(case.variant.name) for case in batch.cases],
+            "nu": [case.nu for case in batch.cases],
+            "extremum_count": [record["extremum_kind"].size for record in records],
+        }
+        casefile.define(file, index, "variant", ("case",))
+        casefile.define(file, Field("nu", "", "1", "tuning nu_s"), "nu", ("case",))
+        count = Field("extremum_count", "", "1", "number of extrema of a case", "i4")
+        rows = casefile.define(file, count, "extremum_count", ("case",))
+        rows.sample_dimension = "extremum"
+        for field, name in STORED:
+            values[name] = _joined(field, [record[name] for record in records])
+            dimensions = _dimensions(field)
+            for dimension, size in zip(dimensions, values[name].shape, strict=True):
+                if dimension not in file.dimensions:
+                    file.createDimension(dimension, size)
+            casefile.define(file, field, name, dimensions)
+        for name, array in values.items():
+            file[name][...] = array
+
+
+def _dimensions(field: Field) -> tuple[str, ...]:
+    return {"extremum": ("extremum",), "": ("case",)}.get(field.dimension, ("case", "boundary"))
+
+
+def _joined(field: Field, arrays: Sequence[np.ndarray]) -> np.ndarray:
+    return np.concatenate(arrays) if field.dimension == "extremum" else np.stack(arrays)
+
+
+def read_batch(path: Path) -> Content:
+    """Read a batch file.
+
+    Raises
+    ------
+    InputError
+        If it is missing or damaged.
+    """
+    if not casefile.is_whole(path):
+        raise InputError(f"{path}: missing or damaged; delete it and run again")
+    with netCDF4.Dataset(path) as file:
+        file.set_auto_mask(False)
+        names = file["variant"].flag_meanings.split()
+        return Content(
+            variants=[names[i] for i in file["variant"][:]],
+            nu=file["nu"][:],
+            counts=file["extremum_count"][:],
+            columns={name: file[name][:] for _, name in STORED},
+        )
+
+
+def read_counts(path: Path) -> np.ndarray:
+    """Read the numbers of extrema of the cases of a batch file, and no more."""
+    try:
+        with netCDF4.Dataset(path) as file:
+            file.set_auto_mask(False)
+            return file["extremum_count"][:]
+    except (OSError, IndexError):
+        raise InputError(f"{path}: missing or damaged; delete it and run again") from None
+
+
+def join(contents: Sequence[Content]) -> Content:
+    """Put contents one behind the other."""
+    return Content(
+        variants=[name for content in contents for name in content.variants],
+        nu=np.concatenate([content.nu for content in contents]),
+        counts=np.concatenate([content.counts for content in contents]),
+        columns={
+            name: np.concatenate([content.columns[name] for content in contents])
+            for _, name in STORED
+        },
+    )

@@ -1,0 +1,366 @@
+"""One case in one NetCDF-4 file: how it is laid out, written, sealed and read.
+
+`FIELDS` is the layout. A `Record` holds a case as its file does: variable name -> array, so what
+is read from a file is written again with the same bytes. A file states in its attributes how it
+was made (`attributes`), and carries a seal: its recipe (the SHA-256 of these attributes) and the
+SHA-256 of its bytes. A look at the seal tells, without the NetCDF library, whether a file is whole
+and whether it is the one that is wanted.
+"""
+
+import contextlib
+import functools
+import hashlib
+import json
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+
+import netCDF4
+import numpy as np
+
+from gearmesh.data import provenance, writing
+from gearmesh.errors import InputError
+from gearmesh.solvers.response import STATUSES, Response
+from gearmesh.study.configuration import Case
+from gearmesh.study.parameters import Parameters
+
+REGIMES = {1: "normal_mesh", 0: "contact_loss", -1: "inverse_mesh"}
+EXTREMUM_KINDS = {1: "maximum", -1: "minimum"}
+
+Record = dict[str, np.ndarray]
+"""A case as its file holds it: variable name -> array."""
+
+_SEAL = b"gearmesh-seal "
+_DIGITS = 64
+_BLANK = b"0" * _DIGITS
+_SEAL_LENGTH = len(_SEAL) + 2 * _DIGITS + 1
+_BLOCK = 2**20
+
+
+@dataclass(frozen=True, slots=True)
+class Field:
+    """One variable of a case file; one in mm has a twin, ``_rel`` behind its name, in y_st.
+
+    Attributes
+    ----------
+    name : str
+        Name; also that of the attribute of `Response` (or of its samples) that it holds.
+    dimension : str
+        ``"extremum"``, ``"boundary"``, ``"sample"``, or empty for a scalar.
+    unit : str
+        Unit in the file.
+    long_name : str
+        What it is.
+    kind : str
+        NumPy type.
+    flags : mapping of int to str
+        Values and meanings of a CF flag variable.
+    """
+
+    name: str
+    dimension: str
+    unit: str
+    long_name: str
+    kind: str = "f8"
+    flags: Mapping[int, str] | None = None
+
+    @property
+    def relative(self) -> str | None:
+        """Name of the twin in static deflections."""
+        return f"{self.name}_rel" if self.unit == "mm" else None
+
+
+_V = "dy/dtau_s (tau_s = Omega_s t)"
+
+FIELDS = (
+    Field("extremum_time", "extremum", "s", "time of a local extremum of y, from the start"),
+    Field("extremum_y", "extremum", "mm", "relative motion y at its local extremum"),
+    Field("extremum_kind", "extremum", "1", "kind of a local extremum", "i1", EXTREMUM_KINDS),
+    Field("strobe_y", "boundary", "mm", "relative motion y after n mesh periods"),
+    Field("strobe_v", "boundary", "mm", f"relative velocity {_V} after n mesh periods"),
+    Field("y_max", "", "mm", "maximum of y over the kept revolutions"),
+    Field("y_min", "", "mm", "minimum of y over the kept revolutions"),
+    Field("y_rms", "", "mm", "root mean square of y over the kept revolutions"),
+    Field("y_max_error", "", "mm", "estimated integration error of y_max"),
+    Field("y_min_error", "", "mm", "estimated integration error of y_min"),
+    Field("contact_loss_fraction", "", "1", "share of the kept time with contact loss"),
+    Field("inverse_mesh_fraction", "", "1", "share of the kept time in inverse mesh"),
+    Field("n_contact_losses", "", "1", "number of contact losses in the kept revolutions", "i4"),
+    Field("turning_points_per_period", "", "1", "mean number of extrema of y in a mesh period"),
+    Field("mesh_period", "", "s", "mesh period"),
+    Field("sensitive", "", "1", "whether the orbit amplifies integration errors", "i1",
+          {0: "no", 1: "yes"}),
+    Field("status", "", "1", "status of the integration", "i1", dict(enumerate(STATUSES))),
+)  # fmt: skip
+"""The variables of every case."""
+
+SAMPLE_FIELDS = (
+    Field("time", "sample", "s", "time, from the start"),
+    Field("y", "sample", "mm", "relative motion in the mesh"),
+    Field("v", "sample", "mm", f"relative velocity {_V}"),
+    Field("a", "sample", "mm", "relative acceleration d2y/dtau_s2 (tau_s = Omega_s t)"),
+    Field("stiffness", "sample", "N/mm", "mesh stiffness C"),
+    Field("modified_stiffness", "sample", "N/mm", "modified mesh stiffness C (H1 + H2)"),
+    Field("force_dynamic", "sample", "N", "dynamic force C y, eq. (2)"),
+    Field("force_friction", "sample", "N", "friction force, eq. (6)"),
+    Field("regime", "sample", "1", "regime of the mesh", "i1", REGIMES),
+)
+"""The variables of a time course."""
+
+
+def record(response: Response, parameters: Parameters) -> Record:
+    """Convert a response into the units of a file.
+
+    Parameters
+    ----------
+    response : Response
+        Dimensionless, with or without samples.
+    parameters : Parameters
+        They set the scales of length, time and force.
+    """
+    scales = {
+        "mm": parameters.assumed.static_deflection,
+        "s": 1.0 / parameters.natural_frequency,
+        "N/mm": parameters.stiffness_mean,
+        "N": parameters.static_force,
+    }
+    columns: Record = {}
+    for field, value in _values(response):
+        array = np.asarray(value, field.kind)
+        if field.dimension == "boundary" and array.size == 0:
+            array = np.full(boundaries(parameters), np.nan)  # of a run that failed
+        if field.relative:
+            columns[field.relative] = array
+        columns[field.name] = array * scales[field.unit] if field.unit in scales else array
+    return columns
+
+
+def boundaries(parameters: Parameters) -> int:
+    """Return the number of boundaries of mesh periods in a run."""
+    return parameters.run.revolutions * parameters.printed.teeth + 1
+
+
+def _values(response: Response) -> Iterator[tuple[Field, object]]:
+    for field in FIELDS:
+        if field.name == "status":
+            yield field, STATUSES.index(response.status)
+        elif field.name == "mesh_period":
+            yield field, response.period
+        else:
+            yield field, getattr(response, field.name)
+    if response.samples is not None:
+        for field in SAMPLE_FIELDS:
+            yield field, getattr(response.samples, field.name)
+
+
+@functools.lru_cache(maxsize=2**13)
+def case_digest(parameters: Parameters, case: Case) -> str:
+    """Return the SHA-256 of all that decides the numbers of a case.
+
+    It is blind to parameters without effect on this case: a conservative run has the same digest
+    whatever the damping.
+    """
+    scales = (
+        parameters.assumed.static_deflection,
+        parameters.natural_frequency,
+        parameters.stiffness_mean,
+    )
+    samples = parameters.run.samples_per_period if case.time_course else 0
+    problem = parameters.problem(case.variant, case.nu)
+    stated = repr((problem, scales, samples, parameters.solver.tolerance))
+    return hashlib.sha256(f"{stated} {_common_digest()}".encode()).hexdigest()
+
+
+@functools.cache
+def _common_digest() -> str:
+    layout = provenance.digest([Path(__file__)])
+    return f"{layout} {provenance.physics_digest()} {provenance.versions()}"
+
+
+def attributes(parameters: Parameters, case: Case) -> dict[str, str | float]:
+    """Return the global attributes of a case file: what it is, and how it was made."""
+    return {
+        "Conventions": "CF-1.11",
+        "title": f"gear mesh, variant {case.variant.name}, nu_s = {case.nu!r}",
+        "variant": case.variant.name,
+        "nu_s": case.nu,
+        "case_sha256": case_digest(parameters, case),
+        **common_attributes(parameters),
+    }
+
+
+@functools.lru_cache(maxsize=4)
+def common_attributes(parameters: Parameters) -> dict[str, str | float]:
+    """Return the attributes that all files of a study share."""
+    return {
+        "parameters": parameters.canonical(),
+        "parameters_sha256": parameters.digest(),
+        "solver": "adaptive Taylor series with located events",
+        "solver_tolerance": parameters.solver.tolerance,
+        **{f"{name}_version": number for name, number in provenance.versions().items()},
+        "physics_sources_sha256": provenance.physics_digest(),
+    }
+
+
+def recipe(attributes: Mapping[str, str | float]) -> str:
+    """Return the SHA-256 of the attributes of a file, by which its seal names what it holds."""
+    return hashlib.sha256(json.dumps(attributes, sort_keys=True).encode()).hexdigest()
+
+
+def write_case(path: Path | str, attributes: Mapping[str, str | float], columns: Record) -> None:
+    """Write a case file, whole or not at all; the same input gives the same bytes.
+
+    Parameters
+    ----------
+    path : Path or str
+        File; its folder is made where it lacks.
+    attributes : mapping
+        See `attributes`.
+    columns : Record
+        See `record`.
+    """
+    path = Path(path)
+    with sealed(path, recipe(attributes)) as file:
+        file.setncatts(attributes)
+        fields = [field for field in (*FIELDS, *SAMPLE_FIELDS) if field.name in columns]
+        for field in fields:
+            if field.dimension and field.dimension not in file.dimensions:
+                file.createDimension(field.dimension, columns[field.name].size)
+        # All definitions before all values: the library would flush at every change between them.
+        created = [
+            define(file, field, name, (field.dimension,) if field.dimension else ())
+            for field in fields
+            for name in (field.name, field.relative)
+            if name
+        ]
+        for variable in created:
+            variable[...] = columns[variable.name]
+
+
+def define(
+    file: netCDF4.Dataset,
+    field: Field,
+    name: str,
+    dimensions: tuple[str, ...],
+    fill_value: float | bool | None = False,
+    **storage: object,
+) -> netCDF4.Variable:
+    """Create the variable of a field, or of its twin, with its attributes."""
+    variable = file.createVariable(name, field.kind, dimensions, fill_value=fill_value, **storage)
+    relative = name != field.name
+    stated = {
+        "units": "1" if relative else field.unit,
+        "long_name": field.long_name + (", in static deflections y_st" if relative else ""),
+    }
+    if field.flags:
+        stated["flag_values"] = np.array(list(field.flags), field.kind)
+        stated["flag_meanings"] = " ".join(field.flags.values())
+    variable.setncatts(stated)
+    variable.set_auto_maskandscale(False)
+    return variable
+
+
+@contextlib.contextmanager
+def sealed(path: Path, made_of: str) -> Iterator[netCDF4.Dataset]:
+    """Open a NetCDF-4 file that comes into being whole and sealed when the context ends.
+
+    Parameters
+    ----------
+    path : Path
+        The file; its folder is made where it lacks.
+    made_of : str
+        The recipe that the seal states.
+
+    Raises
+    ------
+    InputError
+        If it cannot be written: one line that says why.
+    """
+    with writing.replacing(path) as temporary:
+        with netCDF4.Dataset(temporary, "w", format="NETCDF4") as file:
+            # Values that nobody writes would be filled first, at the cost of a second pass.
+            file.set_fill_off()
+            _define_seal(file)
+            yield file
+            _write_blank_seal(file, made_of)
+        _seal(temporary)
+
+
+def _define_seal(file: netCDF4.Dataset) -> None:
+    file.createDimension("seal_length", _SEAL_LENGTH)
+    seal = file.createVariable("seal", "S1", ("seal_length",), fill_value=False)
+    seal.set_auto_chartostring(False)
+    long_name = (
+        "SHA-256 of the recipe of this file, and of its bytes with these last 64 digits at 0"
+    )
+    seal.setncatts({"units": "1", "long_name": long_name})
+
+
+def _write_blank_seal(file: netCDF4.Dataset, made_of: str) -> None:
+    file["seal"][:] = np.frombuffer(_SEAL + made_of.encode() + b" " + _BLANK, "S1")
+
+
+def _seal(path: Path) -> None:
+    """Put the checksum of a closed file into its seal."""
+    place, seal, digest = _look(path)
+    with path.open("r+b") as file:
+        file.seek(place + len(seal) - _DIGITS)
+        file.write(digest)
+
+
+def is_whole(path: Path, made_of: str | None = None) -> bool:
+    """Tell whether a sealed file is as it was written, and by the recipe `made_of` if given."""
+    try:
+        _, seal, digest = _look(path)
+    except OSError:
+        return False
+    recipe = seal[len(_SEAL) : -_DIGITS - 1].decode("latin-1")
+    return seal[-_DIGITS:] == digest and made_of in (None, recipe)
+
+
+def _look(path: Path) -> tuple[int, bytes, bytes]:
+    """Return the place of a file's seal, the seal, and the SHA-256 of the file with blank digits.
+
+    A dataset may be large, so no more than a block of it is in memory.
+    """
+    total, place, seal, overlap = hashlib.sha256(), 0, b"", b""
+    with path.open("rb", buffering=0) as file:
+        while block := file.read(_BLOCK):
+            block = overlap + block
+            overlap = b""
+            start = -1 if seal else block.find(_SEAL)
+            if start >= 0:
+                block += file.read(max(0, start + _SEAL_LENGTH - len(block)))
+                end = start + _SEAL_LENGTH
+                place, seal = place + start, block[start:end]
+                block = block[: end - _DIGITS] + _BLANK + block[end:]
+            elif not seal:  # it may begin where this block ends
+                cut = max(0, len(block) - len(_SEAL))
+                block, overlap = block[:cut], block[cut:]
+                place += cut
+            total.update(block)
+        total.update(overlap)
+    return place, seal, total.hexdigest().encode()
+
+
+def read_case(path: Path | str) -> tuple[dict[str, str | float], Record]:
+    """Read a case file.
+
+    Returns
+    -------
+    tuple of dict and Record
+        The global attributes, and the variables.
+
+    Raises
+    ------
+    InputError
+        If there is no such file, or it is damaged.
+    """
+    path = Path(path)
+    if not is_whole(path):
+        raise InputError(f"{path}: missing or damaged; allowed is a case file as it was written")
+    with netCDF4.Dataset(path) as file:
+        file.set_auto_mask(False)
+        columns = {name: np.asarray(variable[...]) for name, variable in file.variables.items()}
+        del columns["seal"]
+        return file.__dict__, columns

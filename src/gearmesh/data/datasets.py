@@ -1,0 +1,200 @@
+"""All cases of a study in two datasets over (variant, nu): resonance and bifurcation.
+
+`resonance.nc` holds every scalar of a case file, `bifurcation.nc` every extremum and stroboscopic
+point. A cell without a case (the more damped variant has a range of its own) is not-a-number, and
+its status ``not_computed``. Runs for time courses that lie off the grid are in their case files
+only. `open_dataset` reads either.
+"""
+
+import contextlib
+import itertools
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import replace
+from pathlib import Path
+
+import netCDF4
+import numpy as np
+import xarray as xr
+
+from gearmesh.data import batches, casefile
+from gearmesh.data.batches import Content
+from gearmesh.data.casefile import FIELDS, Field
+from gearmesh.errors import InputError
+from gearmesh.model.damping import Variant
+from gearmesh.study.configuration import Study
+
+NOT_COMPUTED = -1
+"""Status of a cell without a case, and what stands there for a count."""
+
+_FLAGS_OF_NO_CASE = {"status": {NOT_COMPUTED: "not_computed"}, "extremum_kind": {0: "none"}}
+_LABELS = (
+    ("letter", "letter of Tab. 1: which powers of the velocity damp"),
+    ("symbol", "where the damping acts"),
+    ("marker", "marker of Tab. 1"),
+)
+_COORDINATES = " ".join(("damping_factor", *(name for name, _ in _LABELS)))
+_BLOCK = 512
+"""Frequencies that are written at a time, which bounds the memory whatever their number."""
+
+_COMPRESSED = {"compression": "zlib", "complevel": 1, "shuffle": True}
+
+
+def open_dataset(path: Path | str) -> xr.Dataset:
+    """Open a dataset and load it.
+
+    Raises
+    ------
+    InputError
+        If it is missing or damaged.
+    """
+    path = Path(path)
+    if not casefile.is_whole(path):
+        raise InputError(f"{path}: missing or damaged; delete it and run again")
+    with xr.open_dataset(path) as dataset:
+        return dataset.load().drop_vars("seal")
+
+
+def write_datasets(
+    study: Study, batch_files: Sequence[Path], resonance: Path, bifurcation: Path
+) -> None:
+    """Make both datasets from the batches of a study; the same input gives the same bytes.
+
+    Parameters
+    ----------
+    study : Study
+        The study; it sets the variants, the frequencies and y_st.
+    batch_files : sequence of Path
+        All its batches, in their order. One of them at a time is in memory.
+    resonance, bifurcation : Path
+        Files to write.
+    """
+    plan = study.study.frequencies()
+    nu = np.array(sorted({nu for _, nus in plan for nu in nus}))
+    longest = max(int(batches.read_counts(file).max()) for file in batch_files)
+    sizes = {"variant": len(plan), "nu": nu.size}
+    more = {"extremum": max(longest, 1), "boundary": casefile.boundaries(study.parameters)}
+    with (
+        _created(resonance, study, "resonance", sizes) as scalars,
+        _created(bifurcation, study, "bifurcation", sizes | more) as sequences,
+    ):
+        for file in (scalars, sequences):
+            _write_coordinates(file, [variant for variant, _ in plan], nu)
+        for field in FIELDS:
+            _define(sequences if field.dimension else scalars, field)
+        rows = {variant.name: row for row, (variant, _) in enumerate(plan)}
+        for name, start, content in _by_block(batch_files, nu):
+            block = nu[start : start + _BLOCK]
+            place = rows[name], slice(start, start + block.size)
+            for field in FIELDS:
+                cells = _cells(field, content, block, longest)
+                file = sequences if field.dimension else scalars
+                _store(file, field, place, cells, study.assumed.static_deflection)
+
+
+@contextlib.contextmanager
+def _created(
+    path: Path, study: Study, title: str, sizes: Mapping[str, int]
+) -> Iterator[netCDF4.Dataset]:
+    stated = {
+        "Conventions": "CF-1.11",
+        "title": f"{study.title}: {title}",
+        **casefile.common_attributes(study.parameters),
+    }
+    made_of = casefile.recipe(stated | sizes)
+    with casefile.sealed(path, made_of) as file:
+        # A chunk may reach beyond the last frequency: what stands there must not be left to chance.
+        file.set_fill_on()
+        file.setncatts(stated)
+        for name, size in sizes.items():
+            file.createDimension(name, size)
+        yield file
+
+
+def _write_coordinates(file: netCDF4.Dataset, variants: Sequence[Variant], nu: np.ndarray) -> None:
+    columns = {"variant": ("name of the damping variant", [v.name for v in variants])}
+    columns |= {
+        name: (long_name, [getattr(variant, name) for variant in variants])
+        for name, long_name in _LABELS
+    }
+    for name, (long_name, texts) in columns.items():
+        labels = file.createVariable(name, str, ("variant",))
+        labels.setncatts({"units": "1", "long_name": long_name})
+        labels[:] = np.array(texts, object)
+    factor = Field("damping_factor", "", "1", "multiple of the printed damping")
+    factors = casefile.define(file, factor, factor.name, ("variant",))
+    factors[:] = [variant.factor for variant in variants]
+    tuning = Field("nu", "", "1", "tuning nu_s of the mesh frequency")
+    casefile.define(file, tuning, tuning.name, ("nu",))[:] = nu
+
+
+def _define(file: netCDF4.Dataset, field: Field) -> None:
+    """Create a variable over (variant, nu), and its twin."""
+    dimensions = ("variant", "nu", *([field.dimension] if field.dimension else []))
+    sizes = [file.dimensions[name].size for name in dimensions]
+    chunk = (1, min(sizes[1], _BLOCK), *sizes[2:])
+    counts = field.kind != "f8" and field.name not in _FLAGS_OF_NO_CASE
+    flags = {**(field.flags or {}), **_FLAGS_OF_NO_CASE.get(field.name, {})}
+    field = replace(field, flags=flags)
+    for name in filter(None, (field.name, field.relative)):
+        fill = NOT_COMPUTED if counts else None
+        variable = casefile.define(
+            file, field, name, dimensions, fill, chunksizes=chunk, **_COMPRESSED
+        )
+        variable.coordinates = _COORDINATES
+        # Every chunk is written whole and once; megabytes of them for each variable would stay.
+        variable.set_var_chunk_cache(size=1)
+
+
+def _store(
+    file: netCDF4.Dataset,
+    field: Field,
+    place: tuple[int, slice],
+    cells: np.ndarray,
+    static_deflection: float,
+) -> None:
+    """Write some frequencies of a variant, in static deflections and in mm."""
+    if field.relative:
+        file[field.relative][place] = cells
+        cells = cells * static_deflection
+    file[field.name][place] = cells
+
+
+def _by_block(batch_files: Iterable[Path], nu: np.ndarray) -> Iterator[tuple[str, int, Content]]:
+    """Yield variant, start of a block of frequencies, and the cases in it.
+
+    Batches hold the cases variant by variant, by ascending frequency. A block is a chunk of the
+    file, so that each chunk is written once, whatever the batches.
+    """
+    pieces = (piece for file in batch_files for piece in batches.read_batch(file).split())
+    for name, group in itertools.groupby(pieces, key=lambda piece: piece.variants[0]):
+        following = iter(group)
+        waiting = next(following)
+        for start in range(0, nu.size, _BLOCK):
+            last = nu[start : start + _BLOCK][-1]
+            while waiting.nu.size == 0 or waiting.nu[-1] < last:
+                more = next(following, None)
+                if more is None:
+                    break
+                waiting = batches.join([waiting, more])
+            end = int(np.searchsorted(waiting.nu, last, side="right"))
+            yield name, start, waiting.part(0, end)
+            waiting = waiting.part(end, waiting.nu.size)
+
+
+def _cells(field: Field, content: Content, nu: np.ndarray, longest: int) -> np.ndarray:
+    """Lay what a variant has out over all frequencies."""
+    stored = content.columns[field.relative or field.name]
+    if field.dimension == "extremum":
+        rectangle = np.full((content.nu.size, max(longest, 1)), _absent(field), field.kind)
+        rectangle[np.arange(rectangle.shape[1]) < content.counts[:, None]] = stored
+        stored = rectangle
+    cells = np.full((nu.size, *stored.shape[1:]), _absent(field), field.kind)
+    on_grid = np.isin(content.nu, nu)
+    cells[np.searchsorted(nu, content.nu[on_grid])] = stored[on_grid]
+    return cells
+
+
+def _absent(field: Field) -> float:
+    if field.kind == "f8":
+        return np.nan
+    return 0 if field.name == "extremum_kind" else NOT_COMPUTED

@@ -1,0 +1,97 @@
+"""Friction in the mesh: eq. (6), its signs, and the arms of its moments.
+
+Geometry
+--------
+y runs along the mesh line, in the direction in which wheel 3 pushes wheel 2, and z across it. The
+centre of wheel 3 lies at z = -R_b, that of wheel 2 at z = +R_b, and the mesh line touches the
+base circles 2 R_b tan(alpha) apart, with the pitch point half-way. A pair of teeth touches at the
+distance sigma from the pitch point; sigma grows with time, from -epsilon p_b / 2, where the pair
+comes into contact, to +epsilon p_b / 2, where it leaves, at one base pitch p_b = 2 pi R_b / Z in a
+mesh period. Seen from the points where the mesh line touches the base circles, the contact is at
+
+    rho_3 = R_b tan(alpha) + sigma,    rho_2 = R_b tan(alpha) - sigma.
+
+A rotation phi_3 moves the flank of wheel 3 by R_b phi_3 along y and by -rho_3 phi_3 along z; a
+rotation phi_2, counted in the same sense, moves that of wheel 2 by -R_b phi_2 and +rho_2 phi_2.
+The friction force F_T on wheel 3 along +z, and -F_T on wheel 2, therefore do the virtual work
+
+    F_T (dz_3 - dz_2) - rho_3 F_T dphi_3 - rho_2 F_T dphi_2,
+
+which gives its generalised forces: F_T and -F_T on z_3 and z_2, and the additional moments
+Delta M_T = -rho_3 F_T on phi_3 and -rho_2 F_T on phi_2. In phi_3 + phi_2 the arms add up to
+2 R_b tan(alpha) wherever the contact is.
+
+Sign
+----
+In steady rotation wheel 3 turns by +omega and wheel 2 by -omega, so the flanks slide at
+-omega rho_3 + omega rho_2 = -2 omega sigma along z. With both signs of eq. (6) positive,
+F_T = -f_T E gamma with gamma > 0 before the pitch point (sigma < 0): F_T opposes the sliding, and
+dissipates, as long as the elastic force E is positive. In inverse mesh E is negative while gamma is
+not, so eq. (6) as printed drives the sliding there; it is kept as printed.
+
+With run-out both signs of eq. (6) act, and the wheels, at rest across the mesh line, only start to
+move along z where friction drives (`gearmesh.solvers.full.kernel` tells of sticking). Run-outs
+that cancel each other in eq. (3) (e_3 = e_2, Delta = pi) leave the first sign without meaning.
+
+Two pairs
+---------
+gamma halves in double contact, and one pair is before the pitch point when the other is behind it:
+their forces cancel. Their moments on each wheel do not, because the arms differ by a base pitch;
+they cancel only in the sum coordinate phi_3 + phi_2.
+"""
+
+import math
+
+from gearmesh.model.stiffness import in_double_contact
+
+
+def pairs_in_contact(phase: float, contact_ratio: float) -> list[tuple[float, float]]:
+    """Return (gamma, sigma / p_b) of each pair of teeth in contact at the mesh phase `phase`.
+
+    gamma runs through 0.5, 1, 0, -1, -0.5 along the path of a pair: half the load in double
+    contact, and a change of sign at the pitch point.
+    """
+    if in_double_contact(phase, contact_ratio):
+        since_middle = phase - round(phase)
+        return [(0.5, since_middle - 0.5), (-0.5, since_middle + 0.5)]
+    sigma = phase % 1.0 - 0.5
+    return [(0.0 if sigma == 0.0 else -math.copysign(1.0, sigma), sigma)]
+
+
+def mesh_gamma(phase: float, contact_ratio: float) -> float:
+    """Return gamma summed over the pairs in contact: 0 for two pairs, +1 then -1 for one."""
+    return sum(gamma for gamma, _ in pairs_in_contact(phase, contact_ratio))
+
+
+def arms(sigma: float, pressure_angle: float, teeth: int) -> tuple[float, float]:
+    """Return rho_3 / R_b and rho_2 / R_b at `sigma` base pitches from the pitch point."""
+    middle = math.tan(pressure_angle)
+    return middle + 2.0 * math.pi / teeth * sigma, middle - 2.0 * math.pi / teeth * sigma
+
+
+def follows_run_out(eccentricity_3: float, eccentricity_2: float) -> bool:
+    """Return whether the signs of eq. (6) act: its Kronecker symbol is 1 for e_2 + e_3 = 0.
+
+    With the Kronecker symbol both arguments are 1 plus a velocity that is small against 1, and
+    both signs are +1.
+    """
+    return eccentricity_3 + eccentricity_2 != 0.0
+
+
+def friction_force(
+    elastic_force: float, coefficient: float, gamma: float, run_out_sign: float, slip_sign: float
+) -> float:
+    """Return F_T of eq. (6) in the unit of `elastic_force`.
+
+    Parameters
+    ----------
+    elastic_force : float
+        C(t) (y H1 + (y + s) H2), negative in inverse mesh and 0 in contact loss.
+    coefficient : float
+        f_T.
+    gamma : float
+        Of one pair, or summed over the pairs in contact.
+    run_out_sign, slip_sign : float
+        The two signs of eq. (6).
+    """
+    return -coefficient * elastic_force * gamma * run_out_sign * slip_sign

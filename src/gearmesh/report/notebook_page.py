@@ -1,0 +1,29 @@
+"""An executed notebook as a page of the report: from disk, without scripts or a network."""
+
+from pathlib import Path
+
+import nbformat
+from nbconvert import HTMLExporter
+from pygments.formatters import HtmlFormatter
+
+from gearmesh.report.presentation import environment
+
+
+def notebook_page(path: Path) -> str:
+    """Return an executed notebook as HTML.
+
+    Parameters
+    ----------
+    path : Path
+        The executed notebook.
+    """
+    exporter = HTMLExporter(
+        template_name="basic",
+        exclude_input_prompt=True,
+        exclude_output_prompt=True,
+        exclude_anchor_links=True,
+    )
+    body, _ = exporter.from_notebook_node(nbformat.read(path, as_version=4))
+    template = environment().get_template("notebook.html.j2")
+    style = HtmlFormatter(style="friendly").get_style_defs(".highlight")
+    return template.render(name=path.stem, body=body, highlighting=style)

@@ -1,0 +1,130 @@
+"""How claims and numbers are put into words, for the notebooks and for the report."""
+
+import math
+import re
+from collections.abc import Iterable, Mapping
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+import jinja2
+from markupsafe import Markup, escape
+
+from gearmesh.paper.claims import DEVIATES, NOT_TESTABLE, REPRODUCED, Bound, Claim, Entry
+from gearmesh.paper.figures.palette import COURSES
+
+TEMPLATES = Path(__file__).parent / "templates"
+
+STATUS_LABELS = {
+    REPRODUCED: "✓ reproduced",
+    DEVIATES: "≠ deviates",
+    NOT_TESTABLE: "– not testable",
+}
+"""Status in words, with a sign, so that it does not hang on colour alone."""
+
+
+_VARIANT = re.compile(r"\b([a-h])-(conservative|material|lubricant|both)(?:-([\d.]+)x)?\b")
+
+
+def number(value: float, digits: int = 6) -> str:
+    """Write a number with a true minus, powers of ten, and a space in long whole numbers."""
+    if not math.isfinite(value):
+        return "–"
+    if 1e4 <= abs(value) < 1e9:
+        return f"{value:,.0f}".replace(",", "\u202f").replace("-", "−")
+    mantissa, exponent, power = f"{value:.{digits}g}".partition("e")
+    if 0 < abs(value) < 1e-3:
+        mantissa, exponent, power = f"{value:.{digits - 1}e}".partition("e")
+        mantissa = mantissa.rstrip("0").rstrip(".") if "." in mantissa else mantissa
+    if exponent:
+        mantissa += f"·10{str(int(power)).translate(_RAISED)}"
+    return mantissa.replace("-", "−")
+
+
+_RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
+
+
+def found(value: Any) -> list[str]:
+    """Write what was measured, in lines: one for each quantity.
+
+    Numbers get four decimals: a threshold is located to half of the last one. Values of several
+    variants stand in one line.
+    """
+    if isinstance(value, Mapping) and value:
+        if all(map(_VARIANT.fullmatch, value)):
+            return [_line(value)]
+        return [f"{_quantity_name(name)}: {_line(item)}" for name, item in value.items()]
+    return [_line(value)]
+
+
+def _line(value: Any) -> str:
+    if value is None:
+        return "–"
+    if isinstance(value, bool):
+        return "yes" if value else "no"
+    if isinstance(value, Mapping):
+        return ", ".join(_named(name, _line(item)) for name, item in value.items()) or "–"
+    if isinstance(value, list | tuple):
+        return ", ".join(map(_line, value)) or "–"
+    if isinstance(value, int | float):
+        return number(round(value, 4)) if abs(value) >= 1e-3 else number(value, 3)
+    return str(value)
+
+
+def _named(name: str, text: str) -> str:
+    return f"{name}\u00a0{text}" if _VARIANT.fullmatch(name) else f"{text}\u00a0({name})"
+
+
+def _quantity_name(name: str) -> str:
+    return name.replace("nu_", "ν_")
+
+
+def expected(claim: Claim) -> list[str]:
+    """Write what the paper claims, with the tolerance, in lines: one for each quantity."""
+    return [
+        f"{_quantity_name(name)}: {_target(target, tolerance)}"
+        if name
+        else _target(target, tolerance)
+        for name, target, tolerance in claim.targets()
+    ]
+
+
+def _target(target: Any, tolerance: float | None) -> str:
+    if isinstance(target, Bound):
+        low, high = target.at_least, target.at_most
+        if low is None:
+            return f"≤ {number(high)}"
+        return f"≥ {number(low)}" if high is None else f"{number(low)} to {number(high)}"
+    return f"{number(target)} ± {number(tolerance)}" if tolerance else number(target)
+
+
+def typeset(text: str) -> Markup:
+    """Write symbols as the paper does: ν_s with its index low, c-material as c-□."""
+    text = _VARIANT.sub(_symbol, str(escape(text)))
+    return Markup(re.sub(r"(?<=\w)_([A-Za-z0-9]+)", r"<sub>\1</sub>", text))
+
+
+def _symbol(match: re.Match) -> str:
+    letter, where, factor = match.groups()
+    multiple = f"\u00a0({factor}k)" if factor else ""
+    return f'<span style="white-space: nowrap">{letter}-{COURSES[where].symbol}{multiple}</span>'
+
+
+@cache
+def environment() -> jinja2.Environment:
+    """Return the environment of the templates: everything is escaped, nothing may be missing."""
+    made = jinja2.Environment(
+        loader=jinja2.FileSystemLoader(TEMPLATES),
+        autoescape=True,
+        undefined=jinja2.StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+    )
+    made.filters.update(number=number, found=found, expected=expected, typeset=typeset)
+    made.globals["status_labels"] = STATUS_LABELS
+    return made
+
+
+def claims_table(entries: Iterable[Entry]) -> str:
+    """Return the HTML table of claims that stands under a figure in its notebook."""
+    return environment().get_template("claims.html.j2").render(entries=list(entries))

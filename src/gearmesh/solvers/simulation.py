@@ -1,0 +1,62 @@
+"""Integration of runs, one or thousands, to a tolerance.
+
+`simulate` is the one door to both solvers: the compiled sweep over SIMD lanes
+(`gearmesh.solvers.reduced.sweep`) for the reduced system, and the general solver in the six
+coordinates (`gearmesh.solvers.full.runs`) for what the reduction leaves out: run-out, profile
+deviation and the truncated Fourier series of the stiffness.
+"""
+
+from collections.abc import Sequence
+
+from gearmesh.model.motion import Problem
+from gearmesh.solvers.reduced import runs as reduced
+from gearmesh.solvers.response import Response
+
+_CHUNK = 256
+
+
+def simulate(
+    problems: Sequence[Problem],
+    tolerance: float = 1e-10,
+    samples_per_period: int = 0,
+    estimate_errors: bool = True,
+) -> list[Response]:
+    """Integrate `problems` and measure their responses.
+
+    Parameters
+    ----------
+    problems : sequence of Problem
+        The runs; each is independent of the others, to the last bit.
+    tolerance : float
+        Bound of the local error of a step, in y_st and y_st Omega_s.
+    samples_per_period : int
+        Samples of the time course in each kept mesh period; 0 for none.
+    estimate_errors : bool
+        Whether every run has a companion, `LOOSENING` times less accurate and displaced by the
+        tolerance at the start, for the estimates `Response.y_max_error`, `y_min_error` and
+        `sensitive`. Costs as much as the run.
+
+    Returns
+    -------
+    list of Response
+        In the order of `problems`. A run that fails has a status other than ``"ok"``. Samples of
+        runs that were solved together are pieces of one array: copy those that you keep.
+    """
+    responses: list[Response | None] = [None] * len(problems)
+    reducible = [i for i, problem in enumerate(problems) if reduced.is_reducible(problem)]
+    for first in range(0, len(reducible), _CHUNK):
+        chunk = reducible[first : first + _CHUNK]
+        found = reduced.integrate(
+            [problems[i] for i in chunk], tolerance, samples_per_period, estimate_errors
+        )
+        for i, measured in zip(chunk, found, strict=True):
+            responses[i] = measured
+    if len(reducible) < len(problems):
+        from gearmesh.solvers.full.runs import integrate
+
+        for i, measured in enumerate(responses):
+            if measured is None:
+                responses[i] = integrate(
+                    problems[i], tolerance, samples_per_period, estimate_errors=estimate_errors
+                )
+    return responses

@@ -1,0 +1,186 @@
+"""How a section of the configuration is declared, and how a slip in one is told.
+
+A section is a frozen pydantic model that refuses unknown keys. A field declared with `quantity`
+takes text with a unit and holds a float in the unit that the field states.
+"""
+
+import difflib
+from collections.abc import Iterable, Mapping, Sequence
+from typing import Any, ClassVar, NamedTuple, TypeVar, get_args, get_origin
+
+from pydantic import BaseModel, ConfigDict, Field, ValidationError, ValidationInfo, field_validator
+
+from gearmesh.errors import InputError
+from gearmesh.study import units
+
+_SHOWN = 60  # characters of a wrong value that a message repeats
+_EXPECTED = {
+    "model_type": "allowed is a mapping of keys to values",
+    "dict_type": "allowed is a mapping of keys to values",
+    "tuple_type": "allowed is a list",
+    "string_type": "allowed is a text",
+    "int_from_float": "allowed is a whole number",
+}
+
+
+def quantity(
+    unit: str, symbol: str, description: str, low: float, high: float, **options: Any
+) -> Any:
+    """Declare a quantity that is stored in `unit` and lies between `low` and `high`.
+
+    `options` are those of ``pydantic.Field``, such as a default.
+    """
+    extra = {"unit": unit, "symbol": symbol, "low": low, "high": high}
+    return Field(description=description, json_schema_extra=extra, **options)
+
+
+class Section(BaseModel):
+    """Base of all sections: frozen, no unknown keys, quantities read with their units."""
+
+    model_config: ClassVar[ConfigDict] = ConfigDict(frozen=True, extra="forbid")
+
+    @field_validator("*", mode="before")
+    @classmethod
+    def _read_quantity(cls, value: object, info: ValidationInfo) -> object:
+        field = cls.model_fields[info.field_name]
+        declared = field.json_schema_extra
+        if declared is None or (value is None and not field.is_required()):
+            return value
+        return _read(value, declared)
+
+
+def _read(value: object, declared: Mapping[str, Any]) -> object:
+    """Read a quantity, or (nested) lists of them, and check the range."""
+    if isinstance(value, list | tuple):
+        return tuple(_read(item, declared) for item in value)
+    unit, low, high = declared["unit"], declared["low"], declared["high"]
+    number = units.parse(value, unit)
+    if not low <= number <= high:
+        raise ValueError(f"out of range; allowed is {_range(low, high, unit)}")
+    return number
+
+
+def _range(low: float, high: float, unit: str) -> str:
+    return f"{low:g} to {high:g}" + ("" if unit == "1" else f" {unit}")
+
+
+Model = TypeVar("Model", bound=BaseModel)
+
+
+def validate(model: type[Model], data: object, where: str, changed: Mapping[str, str]) -> Model:
+    """Build `model` from plain data.
+
+    Parameters
+    ----------
+    model : type of Section
+        What to build.
+    data : object
+        Nested mappings, as read from a file.
+    where : str
+        What the data came from, for messages; may be empty.
+    changed : mapping of str to str
+        Dotted keys whose value came from elsewhere, and from where.
+
+    Raises
+    ------
+    InputError
+        One line with the first slip, and how many more there are.
+    """
+    try:
+        return model.model_validate(data)
+    except ValidationError as error:
+        slips = _slips(model, data, error)
+    slip = slips[0]
+    origin = _origin(slip.about, where, changed)
+    more = f" (and {len(slips) - 1} more)" if len(slips) > 1 else ""
+    line = ": ".join(part for part in (origin, slip.key, slip.text) if part) + more
+    raise InputError(" ".join(line.split())) from None
+
+
+def _origin(key: str, where: str, changed: Mapping[str, str]) -> str:
+    """Say where the value of a key came from, or those of a section."""
+    for name, origin in changed.items():
+        if f"{key}.".startswith(f"{name}."):
+            return origin
+        if not key or name.startswith(f"{key}."):
+            return f"{where} with {origin}"
+    return where
+
+
+def nearest(word: str, choices: Iterable[str]) -> str:
+    """Return ``" (did you mean …?)"`` with the choice that is most like `word`, or nothing."""
+    close = difflib.get_close_matches(word, list(choices), n=1, cutoff=0.6)
+    return f" (did you mean '{close[0]}'?)" if close else ""
+
+
+def shown(value: object) -> str:
+    """Write a value that was found, in one short line."""
+    if value is None:
+        return "nothing"
+    if isinstance(value, Mapping):
+        return "a mapping"
+    if isinstance(value, list | tuple):
+        return "a list"
+    try:
+        text = repr(value)
+    except ValueError:  # an integer with thousands of digits
+        text = "a huge number"
+    return text if len(text) <= _SHOWN else text[:_SHOWN] + "…"
+
+
+class _Slip(NamedTuple):
+    key: str
+    text: str
+    about: str  # the key or section whose values are at fault
+
+
+def _slips(model: type[BaseModel], data: object, error: ValidationError) -> list[_Slip]:
+    """Tell every slip: unknown keys first, missing ones last."""
+    unknown, wrong, missing = [], [], []
+    for item in error.errors(include_url=False, include_input=False):
+        loc = item["loc"]
+        key = ".".join(str(part)[:_SHOWN] for part in loc)
+        if item["type"] == "extra_forbidden":
+            choices = _model_at(model, loc[:-1]).model_fields
+            hint = nearest(str(loc[-1]), choices) or f"; allowed are {', '.join(choices)}"
+            unknown.append(_Slip(key, f"unknown key{hint}", key))
+        elif item["type"] == "missing":
+            missing.append(_Slip(key, f"missing{_purpose(model, loc)}", key))
+        else:
+            reason = _EXPECTED.get(item["type"], item["msg"]).removeprefix("Value error, ")
+            if item["type"] == "value_error" and _model_at(model, loc):
+                name, reason = reason.split(": ", 1)  # a check of a section names the key itself
+                wrong.append(_Slip(f"{key}.{name}".lstrip("."), reason, key))
+            else:
+                wrong.append(_Slip(key, f"found {shown(_at(data, loc))}; {reason}", key))
+    suggested = " ".join(slip.text for slip in unknown)
+    missing = [slip for slip in missing if f"'{slip.key.rpartition('.')[2]}'" not in suggested]
+    return unknown + wrong + missing
+
+
+def _model_at(model: type[BaseModel], loc: Sequence[int | str]) -> type[BaseModel] | None:
+    """Return the section at a key, None if there is a value there."""
+    inside = iter(loc)
+    for part in inside:
+        info = model.model_fields.get(str(part))
+        types = (info.annotation, *get_args(info.annotation)) if info else ()
+        inner = [t for t in types if isinstance(t, type) and issubclass(t, BaseModel)]
+        holds_many = info is not None and get_origin(info.annotation) in (dict, tuple)
+        if not inner or (holds_many and next(inside, None) is None):
+            return None
+        model = inner[0]
+    return model
+
+
+def _purpose(model: type[BaseModel], loc: Sequence[int | str]) -> str:
+    section = _model_at(model, loc[:-1])
+    return f"; wanted is {section.model_fields[loc[-1]].description}" if section else ""
+
+
+def _at(data: object, loc: Sequence[int | str]) -> object:
+    for part in loc:
+        try:
+            data = data[part]
+        except (KeyError, IndexError, TypeError):
+            return data
+    return data

@@ -1,0 +1,36 @@
+"""One run to vary, shared by the tests of the solvers."""
+
+from dataclasses import replace
+
+import numpy as np
+
+from gearmesh.model.damping import VARIANTS
+from gearmesh.model.motion import Problem
+
+MEAN = 3.28954
+POWERS = (0.12336, 0.24672, 0.49344)
+
+
+def problem(nu=0.7, name="c-lubricant", **changes) -> Problem:
+    variant = VARIANTS[name]
+    laws = [
+        tuple(k if acts else 0.0 for k, acts in zip(POWERS, powers, strict=True))
+        for powers in (variant.material_powers, variant.lubricant_powers)
+    ]
+    plain = Problem(
+        nu=nu,
+        contact_ratio=1.569,
+        stiffness_max=4.0 / MEAN,
+        stiffness_min=2.3516 / MEAN,
+        material=laws[0],
+        lubricant=laws[1],
+        backlash=4.0,
+        body_mass=32.0,
+        bearing_stiffness=1.0,
+        bearing_damping_ratio=0.03,
+        friction_coefficient=0.05,
+        pressure_angle=np.pi / 9,
+        teeth=21,
+        base_radius=3000.0,
+    )
+    return replace(plain, **changes)

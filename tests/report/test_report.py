@@ -1,0 +1,320 @@
+"""The report: complete, safe, the same each time, and it opens without a network."""
+
+import re
+import xml.etree.ElementTree as ElementTree
+from html.parser import HTMLParser
+from urllib.parse import urlsplit
+
+import nbformat
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from gearmesh.data import paths
+from gearmesh.data.writing import write_text
+from gearmesh.identification import layout
+from gearmesh.paper.claims import Entry, Evidence, load_ledger, write_entries
+from gearmesh.paper.claims.checking import check_figure
+from gearmesh.paper.equations import EQUATIONS
+from gearmesh.report import page as report
+from gearmesh.report.notebook_page import notebook_page
+from gearmesh.report.presentation import claims_table, expected, found, number, typeset
+from gearmesh.study.parameters import Assumed
+
+
+class Page(HTMLParser):
+    """Links, ids and text of a page."""
+
+    def __init__(self, text: str) -> None:
+        super().__init__()
+        self.tags: list[str] = []
+        self.links: list[str] = []
+        self.ids: list[str] = []
+        self.text = ""
+        self.feed(text)
+
+    def handle_starttag(self, tag, attrs):
+        self.tags.append(tag)
+        for name, value in attrs:
+            if name in ("href", "src", "srcset", "data", "action", "poster"):
+                self.links.append(value)
+            if name == "id":
+                self.ids.append(value)
+
+    def handle_data(self, data):
+        self.text += data
+
+    @property
+    def words(self) -> str:
+        return " ".join(self.text.split())
+
+
+def claim(**changes) -> Entry:
+    given = {
+        "id": "F2.1",
+        "where": "Fig. 2",
+        "figure": "fig2",
+        "statement": "It jumps near ν_s = 0.66.",
+        "kind": "threshold",
+        "expected": 0.66,
+        "tolerance": 0.02,
+        "measured": 0.654321,
+        "status": "reproduced",
+    }
+    return Entry(**given | changes)
+
+
+@pytest.fixture(scope="module")
+def entries(root, study):
+    """Return the whole ledger, with what the printed numbers give; the rest is not testable."""
+    ledger = load_ledger(root / paths.CLAIMS)
+    evidence = Evidence(parameters=study.parameters)
+    figures = ("printed", *paths.NOTEBOOK_NAMES)
+    return [entry for figure in figures for entry in check_figure(figure, evidence, ledger)]
+
+
+@pytest.fixture(scope="module")
+def built(root, small_run, small_study, entries):
+    """Write the report of the smoke study, with stand-ins for its figures and notebooks."""
+    write_entries(small_run / paths.LEDGER, entries)
+    for folder in ("workflow", "config"):
+        (small_run / folder).symlink_to(root / folder)
+    for name in paths.NOTEBOOK_NAMES:
+        executed = small_run / paths.executed_notebook(name)
+        executed.parent.mkdir(exist_ok=True)
+        nbformat.write(executed_notebook(name), executed)
+    for name in paths.FIGURE_NAMES:
+        for file in paths.figure_files(name):
+            (small_run / file).parent.mkdir(exist_ok=True)
+            (small_run / file).touch()
+    with pytest.MonkeyPatch.context() as patch:
+        patch.chdir(small_run)
+        report.write_report(small_study)
+        for name in paths.NOTEBOOK_NAMES:
+            page = notebook_page(paths.executed_notebook(name))
+            write_text(paths.notebook_page(name), page)
+        for path in layout.REPORTED.values():
+            for suffix in (".png", ".svg"):
+                path.with_suffix(suffix).touch()
+    return small_run
+
+
+def executed_notebook(name: str):
+    output = nbformat.v4.new_output(
+        "execute_result", {"text/html": claims_table([claim(figure=name)])}, execution_count=1
+    )
+    cells = [
+        nbformat.v4.new_markdown_cell(f"# {name}\n\nThe tuning ν<sub>s</sub>."),
+        nbformat.v4.new_code_cell("1 < 2", outputs=[output], execution_count=1),
+    ]
+    return nbformat.v4.new_notebook(cells=cells)
+
+
+@pytest.fixture(scope="module")
+def pages(built):
+    files = [paths.REPORT, *map(paths.notebook_page, paths.NOTEBOOK_NAMES)]
+    return {file: (built / file).read_text(encoding="utf-8") for file in files}
+
+
+@pytest.fixture(scope="module")
+def page(pages):
+    return Page(pages[paths.REPORT])
+
+
+def test_nothing_is_loaded_from_a_network_and_nothing_runs(pages):
+    for text in pages.values():
+        parsed = Page(text)
+        assert not {"script", "iframe", "object", "embed", "base"} & set(parsed.tags)
+        assert not [link for link in parsed.links if urlsplit(link).scheme not in ("", "data")]
+        assert not [link for link in parsed.links if link.startswith("//")]
+        assert not re.search(r"@import|url\(", text)
+        assert not re.search(r"\son\w+=", text)
+
+
+def test_every_link_leads_to_something(pages, built):
+    targets = {(built / file).resolve(): Page(text) for file, text in pages.items()}
+    for file, parsed in targets.items():
+        for link in parsed.links:
+            place = urlsplit(link)
+            if place.scheme == "data":
+                continue
+            target = (file.parent / place.path).resolve() if place.path else file
+            assert target.is_file(), link
+            if place.fragment:
+                assert place.fragment in targets[target].ids
+
+
+def test_no_two_places_share_an_id(page):
+    assert len(page.ids) == len(set(page.ids))
+
+
+def test_every_claim_is_in_the_ledger_table(page, entries):
+    assert [name for name in page.ids if re.fullmatch(r"[A-Z]\d+(\.\d+)?", name)] == [
+        entry.id for entry in entries
+    ]
+    for entry in entries:
+        assert " ".join(Page(str(typeset(entry.statement))).words.split()) in page.words
+
+
+def test_the_summary_counts_the_claims(page, entries):
+    for status, label in (
+        ("reproduced", "claims reproduced"),
+        ("deviates", "claims? deviates?"),
+        ("not_testable", "not testable"),
+    ):
+        count = sum(entry.status == status for entry in entries)
+        assert re.search(rf"\b{count} ?{label}", page.words)
+
+
+def test_every_figure_has_its_caption_and_its_notebook(page, root):
+    for name in paths.FIGURE_NAMES:
+        caption = (root / report.CAPTIONS / f"{name}.rst").read_text(encoding="utf-8")
+        assert Page(str(typeset(" ".join(caption.split())))).words in page.words
+        assert f"../figures/{name}.svg" in page.links
+    for name in paths.NOTEBOOK_NAMES:
+        assert f"notebooks/{name}.html" in page.links
+
+
+def test_every_assumption_stands_with_its_reason(page, small_study):
+    for name, info in Assumed.model_fields.items():
+        assert Page(str(typeset(small_study.reasons[name]))).words in page.words
+        assert Page(str(typeset(info.description))).words in page.words
+
+
+def test_the_numbers_of_the_study_are_on_the_page(page, small_study):
+    assert "400\u202f000 N/mm" in page.text
+    assert "328\u202f954 N/mm" in page.text
+    assert small_study.parameters.digest() in page.text
+    cases = small_study.cases()
+    assert (
+        f"{len(cases)}, of which {sum(c.time_course for c in cases)} with time cours" in page.text
+    )
+
+
+def test_failed_and_sensitive_cases_are_told(small_run, small_study, entries):
+    resonance = report.open_dataset(small_run / paths.RESONANCE)
+    assert f"{int((resonance['status'] == 0).sum())} ok<" in render(small_study, entries, resonance)
+    here = {"variant": "c-material", "nu": 0.9}
+    resonance["status"].loc[here] = 1
+    resonance["sensitive"].loc[{"variant": "d-both"}] = 1
+    page = Page(render(small_study, entries, resonance))
+    assert "1 step limit" in page.text
+    total = int((resonance["status"].sel(variant="d-both") == 0).sum())
+    assert f"d-both{total}{total}–" in page.words
+
+
+def render(study, entries, resonance) -> str:
+    return report.render(study, entries, resonance, {"fig1": "A drawing.", "fig2": "A course."})
+
+
+def test_the_same_results_give_the_same_page(small_run, small_study, entries):
+    resonance = report.open_dataset(small_run / paths.RESONANCE)
+    assert render(small_study, entries, resonance) == render(small_study, entries, resonance)
+
+
+def test_text_of_the_ledger_cannot_become_markup(small_run, small_study):
+    evil = claim(statement="<script>alert(1)</script>", measured={"<b>": 1.0}, detail="<i>")
+    text = render(small_study, [evil], report.open_dataset(small_run / paths.RESONANCE))
+    for piece in (text, claims_table([evil])):
+        assert not {"script", "b", "i"} & set(Page(piece).tags) - {"b"}
+        assert "<script>" not in piece
+        assert "&lt;b&gt;" in piece
+
+
+def test_what_is_unexpected_is_said(small_run, small_study):
+    resonance = report.open_dataset(small_run / paths.RESONANCE)
+    surprise = claim(status="deviates", measured=0.7)
+    assert "did not expect" in render(small_study, [surprise], resonance)
+    assert "did not expect" not in render(small_study, [claim()], resonance)
+
+
+def test_all_seven_equations_are_mathml():
+    assert [equation.number for equation in EQUATIONS] == list(range(1, 8))
+    for equation in EQUATIONS:
+        for line in equation.mathml:
+            tree = ElementTree.fromstring(line)
+            assert tree.tag.endswith("math")
+            assert "\\" not in "".join(tree.itertext())
+
+
+def test_captions_are_plain_text(root):
+    for file in (root / report.CAPTIONS).glob("*.rst"):
+        text = file.read_text(encoding="utf-8")
+        assert not re.search(r"[*`|<>\\]|\.\. |::", text), file.name
+        assert text.endswith(".\n")
+
+
+@pytest.mark.parametrize(
+    ("value", "text"),
+    [
+        (0.66, "0.66"),
+        (-2.5, "−2.5"),
+        (328954.2, "328\u202f954"),
+        (400000, "400\u202f000"),
+        (19.7685, "19.7685"),
+        (5e-5, "5·10⁻⁵"),
+        (1.5e12, "1.5·10¹²"),
+        (0.0, "0"),
+        (float("nan"), "–"),
+    ],
+)
+def test_numbers_are_written_as_an_engineer_does(value, text):
+    assert number(value) == text
+
+
+@given(st.floats(min_value=-1e15, max_value=1e15).filter(lambda x: x == 0 or abs(x) > 1e-200))
+def test_a_written_number_is_the_number(value):
+    plain = str.maketrans("−⁻⁰¹²³⁴⁵⁶⁷⁸⁹", "--0123456789", "\u202f")
+    read = float(number(value).translate(plain).replace("·10", "e"))
+    assert read == pytest.approx(value, rel=1e-4)
+
+
+@pytest.mark.parametrize(
+    ("value", "lines"),
+    [
+        (None, ["–"]),
+        (True, ["yes"]),
+        (0.654321, ["0.6543"]),
+        ({}, ["–"]),
+        ([[0.6, 0.7]], ["0.6, 0.7"]),
+        ({"nu_min": 0.78064, "D": None}, ["ν_min: 0.7806", "D: –"]),
+        ({"c-material": 1.0, "c-material-5x": 2.0}, ["c-material\u00a01, c-material-5x\u00a02"]),
+        ({"jump": {"b-both": 1.0}}, ["jump: b-both\u00a01"]),
+        ({"at": {"0.60": 1.0}}, ["at: 1\u00a0(0.60)"]),
+    ],
+)
+def test_what_was_measured_is_written_in_lines(value, lines):
+    assert found(value) == lines
+
+
+@pytest.mark.parametrize(
+    ("target", "tolerance", "lines"),
+    [
+        (0.66, 0.02, ["0.66 ± 0.02"]),
+        (2.0, 0.0, ["2"]),
+        ({"at_least": 0.8}, None, ["≥ 0.8"]),
+        ({"at_most": 0.02}, None, ["≤ 0.02"]),
+        ({"at_least": 0.8, "at_most": 0.9}, None, ["0.8 to 0.9"]),
+        ({"end": 0.64, "pairs": {"at_least": 1}}, 0.01, ["end: 0.64 ± 0.01", "pairs: ≥ 1"]),
+    ],
+)
+def test_what_is_expected_is_written_in_lines(target, tolerance, lines):
+    assert expected(claim(expected=target, tolerance=tolerance)) == lines
+
+
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        ("ν_s and C_max", "ν<sub>s</sub> and C<sub>max</sub>"),
+        ("Ω_s² = C_s/m_red", "Ω<sub>s</sub>² = C<sub>s</sub>/m<sub>red</sub>"),
+        ("a < b", "a &lt; b"),
+        ("time-course", "time-course"),
+    ],
+)
+def test_symbols_are_typeset(text, words):
+    assert typeset(text) == words
+
+
+def test_variants_are_written_with_the_symbols_of_the_paper():
+    text = typeset("c-material, c-material-5x, b-lubricant, d-both, a-conservative")
+    assert Page(str(text)).text == "c-□, c-□\u00a0(5k), b-•, d-×, a-○"

@@ -1,0 +1,419 @@
+"""Closed forms and limits, for both solvers; and what the general one must obey besides."""
+
+import math
+from dataclasses import replace
+from itertools import pairwise
+
+import numpy as np
+import pytest
+from independent import energy, linear_strobes, period_map_trace
+from problems import problem
+from scipy.optimize import brentq
+
+from gearmesh.model.motion import CONTACT_LOSS, NORMAL_MESH
+from gearmesh.solvers.full import runs as general
+from gearmesh.solvers.full.runs import integrate
+from gearmesh.solvers.response import MAXIMUM
+from gearmesh.solvers.simulation import simulate
+
+IMMOVABLE = 1e30
+"""Body mass with which y_3 - y_2 keeps its value, so that y'' = 1 - N is all that is left."""
+
+
+def sweep(case, tolerance=1e-10, samples_per_period=0, estimate_errors=True):
+    return simulate([case], tolerance, samples_per_period, estimate_errors)[0]
+
+
+@pytest.fixture(params=[integrate, sweep], ids=["general", "sweep"])
+def solve(request):
+    """Return a solver of one run."""
+    return request.param
+
+
+def strobes(response):
+    return np.stack([response.strobe_y, response.strobe_v], axis=1)
+
+
+def oscillator(y, v=0.0, c=1.0, **changes):
+    """Return an undamped oscillator y'' = 1 - c y that starts at (y, v)."""
+    return problem(
+        0.9,
+        "a-conservative",
+        **{
+            "stiffness_max": c,
+            "stiffness_min": c,
+            "body_mass": IMMOVABLE,
+            "friction_coefficient": 0.0,
+            "initial_state": (y, v, 0.0, 0.0),
+            **changes,
+        },
+    )
+
+
+@pytest.mark.parametrize(
+    "changes",
+    [
+        # Without damping in the mesh contact is kept where the stiffness hardly changes.
+        {"material": (0.0, 0.0, 0.0), "stiffness_min": 0.98, "stiffness_max": 1.01},
+        {"material": (0.6, 0.0, 0.0)},
+        {"material": (0.6, 0.0, 0.0), "bearing_stiffness": 20.0, "initial_phase": 0.4},
+    ],
+)
+def test_linear_regime_agrees_with_matrix_exponentials(solve, changes):
+    case = problem(0.7, friction_coefficient=0.0, kept_revolutions=5, **changes)
+    response = solve(case, 1e-13)
+    assert response.y_min > 0.0
+    np.testing.assert_allclose(strobes(response), linear_strobes(case), atol=1e-11, rtol=0)
+
+
+def test_free_flight_is_a_parabola(solve):
+    """With y = 1 + 2 cos t, contact is left at v = -sqrt(3) and regained 2 sqrt(3) later."""
+    response = solve(oscillator(3.0, backlash=2.0), 1e-12, 64)
+    period = 2.0 * (math.pi - math.acos(0.5)) + 2.0 * math.sqrt(3.0)
+    maxima = response.extremum_kind == MAXIMUM
+    np.testing.assert_allclose(response.extremum_y[maxima], 3.0, atol=1e-9)
+    np.testing.assert_allclose(response.extremum_y[~maxima], -1.5, atol=1e-9)
+    np.testing.assert_allclose(np.diff(response.extremum_time), 0.5 * period, atol=1e-10)
+    share = 2.0 * math.sqrt(3.0) / period
+    assert response.contact_loss_fraction == pytest.approx(share, abs=0.02)
+    flying = response.samples.regime == CONTACT_LOSS
+    np.testing.assert_allclose(response.samples.a[flying], 1.0, atol=1e-9)
+    np.testing.assert_allclose(
+        response.samples.a[~flying], 1.0 - response.samples.y[~flying], atol=1e-9
+    )
+
+
+def test_back_flank_contact_in_closed_form(solve):
+    """Energy gives the turning point beyond -s: depth^2 / 2 - (s + depth) ... = (y - 1)^2 / 2."""
+    backlash = 0.5
+    response = solve(oscillator(3.0, backlash=backlash), 1e-12)
+    level = 0.5 * 3.0**2 - 3.0
+    # depth^2 / 2 + backlash + depth = level
+    depth = math.sqrt(1.0 + 2.0 * (level - backlash)) - 1.0
+    np.testing.assert_allclose(response.y_min, -backlash - depth, atol=1e-10)
+    assert response.y_max == pytest.approx(3.0, abs=1e-10)
+    assert response.inverse_mesh_fraction > 0.1
+
+
+@pytest.mark.parametrize("depth", [1e-3, 1e-6, 1e-9, 1e-12])
+def test_grazing_contact_loss_is_not_missed(solve, depth):
+    """y = 1 + (1 + depth) cos t dips through 0 for a time of 2 sqrt(2 depth)."""
+    response = solve(oscillator(2.0 + depth, revolutions=1), 1e-15)
+    duration = 21 * response.period
+    dips = int(duration / (2.0 * math.pi) + 0.5)
+    assert response.n_contact_losses == dips
+    assert response.y_min == pytest.approx(-depth, rel=0.01, abs=1e-13)
+    lost = dips * 2.0 * math.sqrt(2.0 * depth) / duration
+    assert response.contact_loss_fraction == pytest.approx(lost, rel=0.02)
+
+
+def test_grazing_from_above_loses_no_contact(solve):
+    response = solve(oscillator(2.0 - 1e-9, revolutions=1), 1e-13)
+    assert response.n_contact_losses == 0
+    assert response.y_min == pytest.approx(1e-9, rel=0.01)
+
+
+@pytest.mark.parametrize("backlash", [5.0, 0.4])
+def test_energy_is_conserved_through_contact_loss_and_back_flank_contact(backlash):
+    case = oscillator(
+        4.0,
+        c=0.9,
+        body_mass=3.0,
+        bearing_damping_ratio=0.0,
+        backlash=backlash,
+        initial_state=(6.0, 0.5, -2.0, 0.3),
+    )
+    state = np.concatenate(general.start(case))
+    summary, final, *_ = general._run(case, 1e-13, 0, 18)
+    assert summary["contact_losses"] > 5
+    assert (summary["inverse_time"] > 0) == (backlash < 1)
+    assert energy(case, final, 0.9) == pytest.approx(energy(case, state, 0.9), abs=1e-9)
+
+
+def trace(solve, nu, damping=0.0):
+    """Return the trace of the period map of y'' + 2 damping y' + C(t) y = 1."""
+    starts = [(1.0, 0.0), (1.1, 0.0), (1.0, 0.1)]
+    ends = []
+    for y, v in starts:
+        case = problem(
+            nu,
+            "a-conservative",
+            material=(2.0 * damping, 0.0, 0.0),
+            body_mass=IMMOVABLE,
+            friction_coefficient=0.0,
+            teeth=1,
+            revolutions=1,
+            # From here contact is not lost within the period.
+            initial_phase=0.75,
+            initial_state=(y, v, 0.0, 0.0),
+        )
+        response = solve(case, 1e-13, estimate_errors=False)
+        assert response.y_min > 0.0
+        ends.append(strobes(response)[1])
+    return period_map_trace(np.array(starts), np.array(ends))
+
+
+def test_floquet_multipliers_leave_the_unit_circle_in_the_third_tongue(solve):
+    """At its edges the multipliers are -1 twice: the trace of the period map is -2."""
+    low = brentq(lambda nu: trace(solve, nu) + 2.0, 0.650, 0.660, xtol=1e-7)
+    high = brentq(lambda nu: trace(solve, nu) + 2.0, 0.662, 0.672, xtol=1e-7)
+    assert low == pytest.approx(0.65562, abs=6e-6)
+    assert high == pytest.approx(0.66734, abs=6e-6)
+
+
+def test_the_third_tongue_vanishes_above_a_damping_ratio(solve):
+    """Multipliers -m and -d/m with the product d: one leaves at the trace -(1 + d)."""
+
+    def margin(nu, damping):
+        product = math.exp(-2.0 * damping * 2.0 * math.pi / nu)
+        return trace(solve, nu, damping) + 1.0 + product
+
+    middle = np.linspace(0.6605, 0.6625, 5)
+    assert min(margin(nu, 0.00885) for nu in middle) < 0.0
+    assert min(margin(nu, 0.00895) for nu in middle) > 0.0
+
+
+LIMITS = [
+    ({"contact_ratio": 1.0}, "stiffness_min"),
+    ({"contact_ratio": 2.0}, "stiffness_max"),
+    ({"contact_ratio": 1.0, "stiffness_harmonics": 3}, "stiffness_min"),
+]
+
+
+@pytest.mark.parametrize(("changes", "level"), LIMITS)
+def test_limits_have_constant_coefficients(solve, changes, level):
+    case = replace(
+        problem(0.8, "c-both", friction_coefficient=0.0, initial_state=(4.0, 0.0, -2.0, 0.0)),
+        **changes,
+    )
+    constant = getattr(case, level)
+    if case.stiffness_harmonics:
+        constant = case.stiffness_min
+    plain = replace(
+        case,
+        contact_ratio=1.5,
+        stiffness_max=constant,
+        stiffness_min=constant,
+        stiffness_harmonics=0,
+    )
+    np.testing.assert_allclose(
+        strobes(solve(case, 1e-12)), strobes(solve(plain, 1e-12)), atol=1e-10
+    )
+
+
+def test_static_equilibrium_stays_where_it_is(solve):
+    case = problem(0.8, "b-both", stiffness_max=1.0, stiffness_min=1.0, friction_coefficient=0.0)
+    response = solve(case, 1e-10)
+    assert response.y_max == pytest.approx(1.0, abs=1e-12)
+    assert response.y_min == pytest.approx(1.0, abs=1e-12)
+
+
+REDUCIBLE = [
+    problem(0.66, "c-material"),
+    problem(0.7, "e-lubricant"),
+    problem(0.9, "d-both", friction_coefficient=0.1, initial_phase=0.37),
+    problem(0.85, "g-both", backlash=0.4),
+    problem(0.75, "h-both", bearing_stiffness=20.0, body_mass=8.0),
+]
+
+
+@pytest.mark.parametrize("case", REDUCIBLE, ids=lambda case: f"nu={case.nu}")
+def test_full_coordinates_agree_with_the_reduced_system(case):
+    full, reduced = integrate(case, 1e-12, 32), simulate([case], 1e-12, 32)[0]
+    np.testing.assert_allclose(strobes(full), strobes(reduced), atol=1e-9, rtol=0)
+    np.testing.assert_allclose(full.extremum_time, reduced.extremum_time, atol=1e-7)
+    np.testing.assert_allclose(full.extremum_y, reduced.extremum_y, atol=1e-9)
+    np.testing.assert_array_equal(full.extremum_kind, reduced.extremum_kind)
+    for name in ("y_max", "y_min", "y_rms", "contact_loss_fraction", "inverse_mesh_fraction"):
+        assert getattr(full, name) == pytest.approx(getattr(reduced, name), abs=1e-9), name
+    assert full.n_contact_losses == reduced.n_contact_losses
+    np.testing.assert_allclose(full.final_state, reduced.final_state, atol=1e-9)
+    for name in (
+        "time",
+        "y",
+        "v",
+        "a",
+        "stiffness",
+        "modified_stiffness",
+        "force_dynamic",
+        "force_friction",
+        "regime",
+    ):
+        np.testing.assert_allclose(
+            getattr(full.samples, name), getattr(reduced.samples, name), atol=1e-8, err_msg=name
+        )
+
+
+def test_truncated_stiffness_converges_to_the_wave():
+    case = problem(0.75, "b-both", friction_coefficient=0.0, revolutions=1)
+    wave = strobes(integrate(case, 1e-11))
+    errors = []
+    for terms in (4, 16, 64, 256):
+        smooth = integrate(replace(case, stiffness_harmonics=terms), 1e-11, estimate_errors=False)
+        errors.append(np.abs(strobes(smooth) - wave).max())
+    # Errors at the jumps average out over a period: faster than the 1 / n of the series.
+    assert all(b < 0.35 * a for a, b in pairwise(errors))
+    assert errors[-1] < 1e-4
+
+
+def test_run_out_appears_at_the_frequency_of_rotation():
+    """Quasi-static: soft excitation far below resonance moves the wheels, not the mesh."""
+    case = problem(
+        0.8,
+        "b-both",
+        friction_coefficient=0.0,
+        stiffness_max=1.0,
+        stiffness_min=1.0,
+        eccentricity_3=0.5,
+        kept_revolutions=2,
+    )
+    turned = integrate(case, 1e-11, 64)
+    y = turned.samples.y - turned.samples.y.mean()
+    spectrum = np.abs(np.fft.rfft(y))
+    # Two kept revolutions: the second line is one a turn.
+    assert np.argmax(spectrum) == 2
+    # y'' + 2 D y' + y = 1 + e_3 (sin omega t)'' but for the bodies.
+    omega = 0.8 / 21
+    assert 2 * spectrum[2] / len(y) == pytest.approx(0.5 * omega**2, rel=0.25)
+
+
+def test_profile_deviation_shakes_the_mesh_at_its_frequency():
+    """A single degree of freedom has the closed-form response to f = a cos(nu t)."""
+    case = problem(
+        0.8,
+        "b-material",
+        friction_coefficient=0.0,
+        stiffness_max=1.0,
+        stiffness_min=1.0,
+        body_mass=IMMOVABLE,
+        deviation=((0.1, 0.0),),
+        revolutions=20,
+    )
+    response = integrate(case, 1e-11)
+    k = case.material[0]
+    amplitude = 0.1 * 0.8**2 / math.hypot(1.0 - 0.8**2, k * 0.8)
+    assert response.y_max == pytest.approx(1.0 + amplitude, abs=1e-9)
+    assert response.y_min == pytest.approx(1.0 - amplitude, abs=1e-9)
+
+
+GENERAL = problem(
+    0.7,
+    "c-both",
+    eccentricity_3=0.5,
+    eccentricity_2=0.3,
+    eccentricity_angle=1.0,
+    deviation=((0.1, 0.05),),
+    stiffness_harmonics=5,
+)
+
+
+def test_achieved_error_follows_the_tolerance():
+    exact = strobes(integrate(GENERAL, 1e-14, estimate_errors=False))
+    for tolerance in (1e-6, 1e-8, 1e-10, 1e-12):
+        found = strobes(integrate(GENERAL, tolerance, estimate_errors=False))
+        assert np.abs(found - exact).max() < 50 * tolerance
+
+
+def test_the_order_of_the_series_changes_nothing():
+    reference = strobes(integrate(GENERAL, 1e-12))
+    for order in (12, 24):
+        found = strobes(integrate(GENERAL, 1e-12, order=order))
+        np.testing.assert_allclose(found, reference, atol=1e-10)
+
+
+def test_estimated_errors_bound_the_achieved_ones():
+    response = integrate(GENERAL, 1e-8)
+    exact = integrate(GENERAL, 1e-14)
+    assert abs(response.y_max - exact.y_max) <= response.y_max_error < 1e-5
+    assert abs(response.y_min - exact.y_min) <= response.y_min_error < 1e-5
+    assert not response.sensitive
+    assert math.isnan(integrate(GENERAL, 1e-8, estimate_errors=False).y_max_error)
+
+
+def test_chaos_is_flagged():
+    chaotic = problem(0.75, "a-conservative")
+    assert integrate(chaotic, 1e-10).sensitive
+
+
+@pytest.mark.parametrize(
+    ("case", "periods"),
+    [(replace(GENERAL, eccentricity_3=0.0, eccentricity_2=0.0), 1), (GENERAL, 21)],
+)
+def test_whole_periods_shift_nothing(case, periods):
+    """A mesh period without run-out, a turn of the wheels with it."""
+    shifted = replace(case, initial_phase=case.initial_phase + periods)
+    np.testing.assert_allclose(
+        strobes(integrate(shifted, 1e-12)), strobes(integrate(case, 1e-12)), atol=1e-10
+    )
+
+
+def test_samples_fit_the_extrema_and_the_regimes():
+    case = replace(GENERAL, lubricant=(0.0, 0.2, 0.0), material=(0.0, 0.0, 0.0), nu=0.85)
+    response = integrate(case, 1e-11, 256)
+    samples = response.samples
+    assert len(samples.time) == 21 * 256
+    np.testing.assert_allclose(np.diff(samples.time), response.period / 256, rtol=1e-9)
+    assert samples.y.max() <= response.y_max + 1e-12
+    assert response.y_max - samples.y.max() < 1e-3
+    np.testing.assert_array_equal(samples.regime == NORMAL_MESH, samples.y >= 0.0)
+    assert np.mean(samples.regime == CONTACT_LOSS) == pytest.approx(
+        response.contact_loss_fraction, abs=0.01
+    )
+    assert response.y_rms == pytest.approx(np.sqrt(np.mean(samples.y**2)), abs=1e-4)
+    np.testing.assert_allclose(
+        np.gradient(samples.y, samples.time)[1:-1], samples.v[1:-1], atol=0.02
+    )
+    kinds = response.extremum_kind
+    assert (kinds[1:] * kinds[:-1] < 0).all()
+    np.testing.assert_allclose(
+        np.interp(response.extremum_time, samples.time, samples.y), response.extremum_y, atol=1e-3
+    )
+
+
+def test_acceleration_jumps_where_the_stiffness_switches():
+    """Points A and B: jumps of y'' at the switches, and none elsewhere in normal mesh."""
+    case = problem(0.8, "c-material", eccentricity_3=0.3, friction_coefficient=0.0)
+    samples = integrate(case, 1e-10, 2048).samples
+    assert (samples.regime == NORMAL_MESH).all()
+    jumps = np.abs(np.diff(samples.a))
+    switched = np.diff(samples.stiffness) != 0.0
+    assert switched.sum() == 2 * 21
+    assert jumps[switched].min() > 10 * jumps[~switched].max()
+
+
+def test_a_run_goes_on_where_another_ended():
+    case = replace(GENERAL, eccentricity_3=0.0, eccentricity_2=0.0)
+    long = integrate(replace(case, revolutions=2), 1e-12)
+    first = integrate(replace(case, revolutions=1), 1e-12)
+    second = integrate(replace(case, revolutions=1, initial_state=first.final_state), 1e-12)
+    np.testing.assert_allclose(second.strobe_y[1:], long.strobe_y[22:], atol=1e-10)
+    np.testing.assert_allclose(second.extremum_y, long.extremum_y, atol=1e-10)
+
+
+def test_a_run_that_takes_too_many_steps_says_so(monkeypatch):
+    monkeypatch.setattr(general, "_STEPS_PER_PERIOD", -1000)
+    response = integrate(GENERAL)
+    assert response.status == "step_limit"
+    assert math.isnan(response.y_max)
+
+
+def test_run_outs_that_cancel_each_other_are_told():
+    """The bracket of eq. (6) vanishes identically, and its sign has no meaning."""
+    case = problem(0.7, eccentricity_3=1.0, eccentricity_2=1.0, eccentricity_angle=math.pi)
+    assert integrate(case).status == "step_limit"
+    assert integrate(replace(case, friction_coefficient=0.0)).status == "ok"
+
+
+def test_too_many_extrema_are_told(monkeypatch):
+    monkeypatch.setattr(general, "_EXTREMA_PER_PERIOD", 1)
+    assert integrate(GENERAL).status == "extremum_overflow"
+
+
+def test_a_run_that_leaves_every_scale_is_told():
+    assert integrate(oscillator(1e12)).status == "not_finite"
+
+
+def test_both_solvers_answer_through_one_door():
+    one, two = simulate([GENERAL, problem(0.7, "c-both")])
+    assert one.y_max == integrate(GENERAL).y_max
+    assert two.y_max != one.y_max

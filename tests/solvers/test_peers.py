@@ -1,0 +1,126 @@
+"""The solver against heyoka's Taylor method, over whole runs of all 105 mesh periods.
+
+heyoka integrates the reduced equations to rounding; they are written for it in `benchmarks`,
+apart from the library. Extrema, strobe points and samples have to agree wherever the orbit does
+not blow up what is below any solver's reach: the runs here are none of those, and that is
+tested too.
+"""
+
+import sys
+from dataclasses import replace
+from itertools import pairwise
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from gearmesh.model.damping import VARIANTS, variant
+from gearmesh.study.configuration import load_study
+
+pytest.importorskip(
+    "heyoka", reason="heyoka is not installed: pip install -r requirements-bench.in"
+)
+
+ROOT = Path(__file__).parents[2]
+sys.path.insert(0, str(ROOT))  # benchmarks is a folder of the project, not of the package
+
+from benchmarks.outcome import deviation  # noqa: E402
+from benchmarks.peers import OURS, PEERS  # noqa: E402
+from benchmarks.reference import references  # noqa: E402
+
+AGREEMENT = 1e-8
+TIGHT = 1e-13
+
+
+PARAMETERS = load_study(ROOT / "config" / "paper.yaml").parameters.replace(
+    {
+        "assumed.backlash": "40 um",
+        "assumed.damping_length": "5 um",
+        "assumed.body_mass": "100 kg",
+        "assumed.bearing_stiffness": "3.29e5 N/mm",
+        "assumed.bearing_damping_ratio": 0.03,
+        "assumed.friction_coefficient": 0.05,
+        "assumed.initial_phase": 0,
+    }
+)
+"""Assumptions of their own, so that what the study assumes can change."""
+
+
+def problem(name, nu, **changes):
+    return replace(PARAMETERS.problem(variant(name), nu), **changes)
+
+
+GRAZING = problem("c-material", 0.857039)
+"""Contact is lost by less than 1e-5 static deflections."""
+
+BACK_FLANK = problem("c-lubricant", 1.0, backlash=0.6)
+
+RUNS = {name: problem(name, 1.0) for name in VARIANTS} | {
+    "grazing": GRAZING,
+    "back-flank contact": BACK_FLANK,
+    "back-flank contact, both": problem("b-both", 0.9, backlash=0.6),
+    "near the jump": problem("c-lubricant", 0.655),
+    "normal mesh throughout": problem("b-material", 0.66),
+    "strong friction": problem("c-material", 0.8, friction_coefficient=0.3),
+    "no friction": problem("h-both", 0.8, friction_coefficient=0.0),
+    "another phase at the start": problem("d-both", 0.7, initial_phase=0.3),
+    "start at a switch": problem("c-lubricant", 0.8, initial_phase=0.2845),
+    "five times the damping": problem("c-material-5x", 0.61),
+    "light bodies on soft bearings": problem("e-both", 0.85, body_mass=5.0, bearing_stiffness=0.3),
+}
+
+
+@pytest.fixture(scope="module")
+def known():
+    return dict(zip(RUNS, references(list(RUNS.values())), strict=True))
+
+
+@pytest.mark.parametrize("name", RUNS)
+def test_agrees_with_heyoka_over_the_whole_run(name, known):
+    assert not known[name].sensitive
+    (outcome,) = OURS.load()([RUNS[name]], TIGHT)
+    found = deviation(outcome, known[name].outcome)
+    assert found.extrema_agree
+    assert found.error < AGREEMENT
+
+
+def test_runs_visit_what_they_are_named_for(known):
+    assert -1e-5 < known["grazing"].outcome.extremum_y.min() < 0
+    assert known["back-flank contact"].outcome.sample_y.min() < -BACK_FLANK.backlash
+    assert known["normal mesh throughout"].outcome.sample_y.min() > 0
+
+
+def test_displacement_of_the_start_shows_which_orbits_are_sensitive():
+    chaotic, damped = references([problem("a-conservative", 0.62), problem("b-both", 0.9)])
+    assert chaotic.sensitive
+    assert not damped.sensitive
+
+
+def test_tighter_tolerance_comes_closer(known):
+    names = [name for name in VARIANTS if not name.startswith("a")]
+    errors = [
+        [
+            deviation(outcome, known[name].outcome).error
+            for name, outcome in zip(
+                names, OURS.load()([RUNS[name] for name in names], tolerance), strict=True
+            )
+        ]
+        for tolerance in (1e-8, 1e-10, 1e-12)
+    ]
+    for coarse, fine in pairwise(np.median(errors, axis=1)):
+        assert fine < coarse / 10
+
+
+@pytest.mark.parametrize("solver", PEERS, ids=lambda solver: solver.module)
+def test_peer_solves_the_same_problem(solver, known):
+    try:
+        solve = solver.load()
+    except ImportError as error:
+        pytest.skip(f"{solver.name} is not installed: {error}")
+    bound = 1e-2 if solver.module == "rk4" else AGREEMENT
+    names = ("grazing", "back-flank contact", "no friction", "start at a switch")
+    for name in names:
+        (outcome,) = solve([RUNS[name]], solver.settings[-1])
+        found = deviation(outcome, known[name].outcome)
+        assert found.extrema_agree, name
+        assert found.error < bound, name

@@ -1,0 +1,241 @@
+"""What is pulled out under a run: afterwards a rerun ends with the same bytes, or says what to do.
+
+Real runs of real processes, on a tiny study.
+"""
+
+import contextlib
+import fcntl
+import os
+import random
+import shutil
+import signal
+import subprocess
+import time
+from pathlib import Path
+
+import numpy as np
+import pytest
+import xarray as xr
+from project import Project, end, wait_for
+
+KILLS = 10
+
+
+@pytest.fixture
+def fresh(tiny: Project, tmp_path: Path) -> Project:
+    """The same without results; what is compiled is there."""
+    project = tiny.copy(tmp_path / "project")
+    shutil.rmtree(project.path("results"))
+    shutil.rmtree(project.path(".snakemake"))
+    return project
+
+
+def heals(project: Project, undisturbed: Project) -> bool:
+    """Run again; tells whether all ends as if nothing had happened."""
+    finished = project.run("data")
+    assert finished.returncode == 0, finished.stdout
+    return project.results() == undisturbed.results()
+
+
+@contextlib.contextmanager
+def mounted(folder: Path, options: str):
+    """Mount a small file system, where this machine lets us."""
+    folder.mkdir(exist_ok=True)
+    command = ["mount", "-t", "tmpfs", "-o", options, "tmpfs", str(folder)]
+    if os.geteuid() or shutil.which("mount") is None:
+        pytest.skip("mounting a file system needs root")
+    if subprocess.run(command, capture_output=True, check=False).returncode:
+        pytest.skip("this machine does not let us mount a file system")
+    try:
+        yield
+    finally:
+        subprocess.run(["umount", "--lazy", str(folder)], check=False)
+
+
+def workers(project: Project) -> list[int]:
+    """Return the processes that compute cases for this project."""
+    found = []
+    for process in Path("/proc").glob("[0-9]*"):
+        with contextlib.suppress(OSError):
+            words = (process / "cmdline").read_bytes().split(b"\0")
+            if Path(os.readlink(process / "cwd")) == project.folder and any(
+                word.endswith(b"compute_cases.py") for word in words[1:2]
+            ):
+                found.append(int(process.name))
+    return found
+
+
+@pytest.mark.parametrize("seed", range(KILLS))
+def test_a_killed_run_heals(tiny, fresh, seed):
+    """kill -9 at a random moment: of everything, or of Snakemake alone, whose jobs live on."""
+    chance = random.Random(seed)
+    process = fresh.start("data")
+    time.sleep(chance.uniform(0.1, 1.0) * tiny.seconds)
+    if seed % 2:
+        end(process, signal.SIGKILL)
+    else:
+        process.kill()
+        process.stdout.close()
+        process.wait()
+    assert heals(fresh, tiny)
+
+
+def test_a_killed_worker_heals(tiny, fresh):
+    process = fresh.start("data")
+    if found := wait_for(lambda: workers(fresh), process):
+        os.kill(found[0], signal.SIGKILL)
+    process.communicate()
+    assert process.returncode != 0
+    assert heals(fresh, tiny)
+
+
+def test_an_interrupted_run_heals(tiny, fresh):
+    process = fresh.start("data")
+    wait_for(lambda: workers(fresh), process)
+    end(process, signal.SIGINT)
+    assert process.returncode != 0
+    assert heals(fresh, tiny)
+
+
+def test_a_full_disk_is_told_and_heals(tiny, fresh):
+    results = fresh.path("results")
+    with mounted(results, "size=200k"):
+        finished = fresh.run("data")
+        assert finished.returncode != 0
+        assert "the disk is full; free some space and run again" in finished.stdout
+        subprocess.run(["mount", "-o", "remount,size=50m", str(results)], check=True)
+        assert heals(fresh, tiny)
+
+
+def test_results_that_cannot_be_written_are_told(fresh):
+    with mounted(fresh.path("results"), "size=1m,ro"):
+        finished = fresh.run("data")
+        assert finished.returncode != 0
+        assert "results: cannot be written" in finished.stdout
+
+
+WRONG = {
+    "assumed: {backlsh: 40 um}": "assumed.backlsh: unknown key (did you mean 'backlash'?)",
+    "study: {nu: {step: 1e-9}}": "study.nu.step: makes 600000001 frequencies; allowed are at most",
+    "title: !!python/object/apply:os.system [touch results]": "tags (!) are not supported",
+}
+
+
+def refusal(project: Project) -> str:
+    """Run, and return the one line with which the run is refused."""
+    finished = project.run("data")
+    assert finished.returncode == 2
+    assert "Traceback" not in finished.stdout
+    (line,) = (line for line in finished.stdout.splitlines() if line.startswith("gearmesh:"))
+    return line
+
+
+@pytest.mark.parametrize("text", WRONG)
+def test_a_wrong_configuration_is_told_before_anything_is_written(fresh, text):
+    fresh.path("config/tiny.yaml").write_text(f"base: paper.yaml\n{text}\n")
+    before = sorted(fresh.folder.iterdir())
+    line = refusal(fresh)
+    assert line.startswith("gearmesh: error: config/tiny.yaml: ")
+    assert WRONG[text] in line
+    snakemake_s_own = fresh.path(".snakemake")
+    assert sorted(set(fresh.folder.iterdir()) - {snakemake_s_own}) == before
+
+
+@pytest.mark.parametrize(
+    ("name", "text"),
+    [
+        ("config/identify.yaml", "ranges: {backlash: {low: 1}}"),
+        ("config/claims.yaml", "F2.1: {where: Fig. 2, figure: fig9}"),
+        ("config/claims.yaml", "- F2.1"),
+    ],
+)
+def test_a_slip_elsewhere_is_told_like_one_in_the_study(fresh, name, text):
+    fresh.path(name).write_text(f"{text}\n")
+    assert refusal(fresh).startswith(f"gearmesh: error: {name}: ")
+    assert not fresh.path("results").exists()
+
+
+def test_two_runs_at_once_do_not_disturb_each_other(tiny, fresh):
+    first = fresh.start("data")
+    wait_for(fresh.path("results/.journal").exists, first)
+    second = fresh.run("data")
+    told, _ = first.communicate()
+    assert first.returncode == 0, told
+    if second.returncode:  # it came while the first was at work
+        assert "another run is at work here; wait for its end, or stop it" in second.stdout
+    assert fresh.results() == tiny.results()
+
+
+def test_a_look_at_the_workflow_deletes_nothing(fresh):
+    damaged = _damaged_dataset(fresh)
+    for option in ("--lint", "--summary"):
+        told = fresh.run(options=(option,)).stdout
+        assert "resonance.nc: damaged, to be made again" in told
+        assert damaged.exists()
+
+
+def test_a_run_that_is_turned_away_deletes_nothing(fresh):
+    damaged = _damaged_dataset(fresh)
+    with fresh.path("results/.run.lock").open("a") as lock:
+        fcntl.flock(lock, fcntl.LOCK_EX)
+        second = fresh.run("data")
+    assert second.returncode
+    assert "another run is at work here" in second.stdout
+    assert damaged.exists()
+
+
+def _damaged_dataset(project: Project) -> Path:
+    damaged = project.path("results/datasets/resonance.nc")
+    damaged.parent.mkdir(parents=True, exist_ok=True)
+    damaged.write_bytes(b"not a dataset")
+    return damaged
+
+
+def test_an_unwritable_compilation_cache_changes_nothing(tiny, fresh, tmp_path):
+    """Neither the folder of the sources nor the one of the user can hold compiled code."""
+    for folder in fresh.path("src").rglob("__pycache__"):
+        shutil.rmtree(folder)
+        folder.write_text("no folder")
+    cache = tmp_path / "cache"
+    cache.mkdir()
+    (cache / "numba").write_text("no folder")
+    fresh.environment |= {"XDG_CACHE_HOME": str(cache)}
+    fresh.edit("config/tiny.yaml", "cases_per_job: 7", "cases_per_job: 100")
+    finished = fresh.run("data")
+    assert finished.returncode == 0, finished.stdout
+    results = {n: d for n, d in fresh.results().items() if not n.startswith("batches/")}
+    assert results.items() <= tiny.results().items()
+
+
+def test_a_case_that_fails_stops_nothing_else(fresh):
+    """Damping so strong that no step is small enough."""
+    fresh.edit("config/paper.yaml", "damping: 3.9537 N s/mm", "damping: 1e6 N s/mm")
+    fresh.edit("config/paper.yaml", "damping_length: ", "damping_length: 1e-6 mm # ")
+    finished = fresh.run("data")
+    assert finished.returncode == 0, finished.stdout
+    assert "not integrated" in finished.stdout
+    resonance = xr.open_dataset(fresh.path("results/datasets/resonance.nc"))
+    status = resonance["status"].sel(variant=["a-conservative", "c-material"]).values
+    assert (status[0] == 0).all()
+    assert (status[1] > 0).all()
+    assert np.isnan(resonance["y_max"].sel(variant="c-material")).all()
+
+
+def test_a_kernel_that_dies_is_told_and_heals(smoke, tmp_path):
+    project = smoke.copy(tmp_path / "project")
+    notebook = project.path("notebooks/fig2.ipynb")
+    text = notebook.read_text(encoding="utf-8")
+    project.edit(
+        "notebooks/fig2.ipynb",
+        "from gearmesh.paper.claims import",
+        "import os; os.kill(os.getpid(), 9)\\nfrom gearmesh.paper.claims import",
+    )
+    finished = project.run("results/figures/fig2.png")
+    assert finished.returncode != 0
+    assert "died" in finished.stdout
+    assert "run again" in finished.stdout
+    assert not project.path("results/figures/fig2.png").exists()
+    assert project.path("results/notebooks/fig2.ipynb").exists()
+    notebook.write_text(text, encoding="utf-8")
+    assert project.run("results/figures/fig2.png").returncode == 0
+    assert project.results() == smoke.results()

@@ -1,0 +1,112 @@
+"""Notebooks: committed clean, parametrised, without logic, and they run."""
+
+import ast
+import json
+
+import nbformat
+import pytest
+
+from gearmesh.data import paths
+from gearmesh.paper.claims import load_ledger, read_entries
+
+PLACES = {
+    "configuration": paths.PAPER,
+    "resonance": paths.RESONANCE,
+    "bifurcation": paths.BIFURCATION,
+    "thresholds": paths.THRESHOLDS,
+    "cases": paths.CASES,
+    "ledger": paths.CLAIMS,
+}
+
+each_notebook = pytest.mark.parametrize("name", paths.NOTEBOOK_NAMES)
+
+
+@pytest.fixture
+def notebook(name, root):
+    read = nbformat.read(root / paths.notebook(name), as_version=4)
+    nbformat.validate(read)
+    return read
+
+
+def code_cells(notebook) -> list:
+    return [cell for cell in notebook.cells if cell.cell_type == "code"]
+
+
+def parameter_cell(notebook):
+    (found,) = [c for c in notebook.cells if "parameters" in c.metadata.get("tags", ())]
+    return found
+
+
+def test_every_figure_but_the_drawing_has_a_notebook_and_so_has_the_identification(root):
+    found = sorted(path.stem for path in (root / paths.NOTEBOOKS).glob("*.ipynb"))
+    assert found == sorted({*paths.FIGURE_NAMES, "identification"} - {"fig1"})
+
+
+@each_notebook
+def test_a_notebook_is_committed_without_outputs(notebook):
+    for cell in code_cells(notebook):
+        assert cell.outputs == []
+        assert cell.execution_count is None
+    assert set(notebook.metadata) == {"kernelspec", "language_info"}
+
+
+@each_notebook
+def test_the_parameters_are_the_places_that_others_rely_on(name, notebook):
+    given = {}
+    exec(parameter_cell(notebook).source, given)
+    del given["__builtins__"]
+    assert given.pop("figure") == str(paths.FIGURES / name)
+    assert given.pop("checks") == str(paths.check_file(name))
+    assert given == {key: str(PLACES[key]) for key in given}
+
+
+@each_notebook
+def test_a_notebook_holds_no_logic(notebook):
+    """Nothing is defined, repeated or decided in a notebook: that belongs to a module."""
+    logic = (ast.FunctionDef, ast.ClassDef, ast.Lambda, ast.For, ast.While, ast.If, ast.Try)
+    for cell in code_cells(notebook):
+        assert not [node for node in ast.walk(ast.parse(cell.source)) if isinstance(node, logic)]
+
+
+@each_notebook
+def test_a_notebook_shows_checks_and_explains(notebook):
+    kinds = [cell.cell_type for cell in notebook.cells]
+    headings = [c.source.splitlines()[0] for c in notebook.cells if c.cell_type == "markdown"]
+    assert kinds == ["markdown", *["code"] * 3, "markdown", "code", "markdown"]
+    assert headings[1:] == ["## What the paper claims", "## What is seen"]
+
+
+@each_notebook
+def test_a_notebook_needs_no_equation_renderer(notebook):
+    """Its page stands without a script, so its symbols are letters."""
+    assert not any("$" in c.source for c in notebook.cells if c.cell_type == "markdown")
+
+
+@each_notebook
+def test_a_notebook_runs_and_leaves_figure_and_checks(name, notebook, root, small_run, tmp_path):
+    given = {
+        "configuration": root / paths.SMOKE,
+        "ledger": root / paths.CLAIMS,
+        "figure": tmp_path / name,
+        "checks": tmp_path / "checks.json",
+        **{key: small_run / PLACES[key] for key in PLACES.keys() - {"configuration", "ledger"}},
+    }
+    namespace = {}
+    for cell in code_cells(notebook):
+        exec(cell.source, namespace)
+        if cell is parameter_cell(notebook):
+            namespace.update({key: str(value) for key, value in given.items() if key in namespace})
+    assert (tmp_path / f"{name}.png").stat().st_size > 10_000
+    assert (tmp_path / f"{name}.svg").stat().st_size > 10_000
+    expected = [claim.id for claim in load_ledger(root / paths.CLAIMS) if claim.figure == name]
+    assert [entry.id for entry in read_entries(tmp_path / "checks.json")] == expected
+
+
+def test_the_pipeline_sets_every_parameter_of_every_notebook(root):
+    """A parameter that the pipeline does not pass would silently keep its default."""
+    rule = (root / "workflow" / "rules" / "figures.smk").read_text(encoding="utf-8")
+    for name in paths.NOTEBOOK_NAMES:
+        cells = json.loads((root / paths.notebook(name)).read_text(encoding="utf-8"))["cells"]
+        (source,) = [c["source"] for c in cells if "parameters" in c["metadata"].get("tags", ())]
+        for line in source:
+            assert f"{line.partition(' = ')[0]}=" in rule
