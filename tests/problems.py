@@ -4,8 +4,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from gearmesh.model.damping import VARIANTS
 from gearmesh.model.motion import Problem
+from gearmesh.model.variants import VARIANTS
 
 MEAN = 3.28954
 POWERS = (0.12336, 0.24672, 0.49344)

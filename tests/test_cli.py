@@ -8,7 +8,7 @@ import sys
 import pytest
 
 from gearmesh import __version__
-from gearmesh.model.damping import VARIANTS
+from gearmesh.model.variants import VARIANTS
 
 
 @pytest.fixture

@@ -96,7 +96,7 @@ def _load(options: argparse.Namespace):
 
 
 def _simulate(options: argparse.Namespace) -> int:
-    from gearmesh.model.damping import variant
+    from gearmesh.model.variants import variant
     from gearmesh.study.configuration import Case, read_nu
 
     try:
@@ -143,7 +143,7 @@ def _check_output(path: Path) -> None:
 
 
 def _variants(options: argparse.Namespace) -> int:
-    from gearmesh.model.damping import VARIANTS
+    from gearmesh.model.variants import VARIANTS
 
     head = ("name", "mark", "k1", "k2", "k3", "k1m", "k2m", "k3m", "damping")
     rows = [

@@ -11,7 +11,7 @@ from gearmesh.data import paths
 from gearmesh.identification import design, layout, store, survey, table
 from gearmesh.identification.courses import ACCURACY, SampledCourses, look
 from gearmesh.identification.settings import KINDS, load_settings
-from gearmesh.model.damping import variant
+from gearmesh.model.variants import variant
 from gearmesh.paper import thresholds
 from gearmesh.solvers.simulation import simulate
 

@@ -14,7 +14,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from gearmesh.model.damping import VARIANTS, variant
+from gearmesh.model.variants import VARIANTS, variant
 from gearmesh.study.configuration import load_study
 
 pytest.importorskip(

@@ -10,8 +10,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from problems import problem
 
-from gearmesh.model.damping import VARIANTS
 from gearmesh.model.motion import CONTACT_LOSS, INVERSE_MESH, NORMAL_MESH
+from gearmesh.model.variants import VARIANTS
 from gearmesh.solvers import simulation as integrator
 from gearmesh.solvers.response import MAXIMUM, Response, Samples
 from gearmesh.solvers.simulation import simulate

@@ -12,7 +12,7 @@ from collections.abc import Callable, Collection, Iterable, Mapping
 import numpy as np
 
 from gearmesh.dynamics.refinement import Batch, refine_change, refine_peak, refine_step
-from gearmesh.model.damping import variant
+from gearmesh.model.variants import variant
 from gearmesh.solvers.response import MAXIMUM, MINIMUM, Response
 from gearmesh.solvers.simulation import simulate
 from gearmesh.study.parameters import Parameters

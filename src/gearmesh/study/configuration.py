@@ -14,7 +14,7 @@ from typing import Annotated, Self
 from pydantic import BeforeValidator, Field, field_validator, model_validator
 
 from gearmesh.errors import InputError
-from gearmesh.model.damping import VARIANTS, Variant, variant
+from gearmesh.model.variants import VARIANTS, Variant, variant
 from gearmesh.study import units, yamlfile
 from gearmesh.study.parameters import Assumed, Derived, Parameters, Printed, Run, Solver
 from gearmesh.study.schema import Section, nearest, quantity, shown, validate
