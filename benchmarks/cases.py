@@ -4,7 +4,7 @@ from pathlib import Path
 
 import numpy as np
 
-from gearmesh.model.motion import Problem
+from gearmesh.model.problem import Problem
 from gearmesh.model.variants import variant
 from gearmesh.study.configuration import load_study
 

@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from gearmesh.model.motion import Problem
+from gearmesh.model.problem import Problem
 from gearmesh.model.variants import VARIANTS
 
 MEAN = 3.28954

@@ -79,12 +79,14 @@ def test_a_sweep_goes_on_from_its_neighbour(parameters, sample, kind):
     assert (first < second) == (kind == "up")
     start, following = courses.at([first, second])
     by_hand = replace(
-        parameters.problem(variant("b-lubricant"), second), initial_state=start.final_state
+        parameters.problem(variant("b-lubricant"), second),
+        initial_state=courses.problem(second).initial_state,
     )
+    assert by_hand.initial_state.y == pytest.approx(start.final_state.y, abs=1e-14)
     assert following.y_max == simulate([by_hand], parameters.solver.tolerance)[0].y_max
     # Off the grid a run starts from the same neighbour as its next place on the grid.
     between = 0.5 * (first + second)
-    assert courses.problem(between).initial_state == start.final_state
+    assert courses.problem(between).initial_state == by_hand.initial_state
 
 
 def test_an_initial_velocity_is_one_of_the_mesh(parameters, sample):

@@ -12,7 +12,8 @@ from dataclasses import replace
 import numpy as np
 
 from gearmesh.identification.design import Sample, parameters_of
-from gearmesh.model.motion import Problem
+from gearmesh.model.motion import state_at
+from gearmesh.model.problem import Problem, State
 from gearmesh.paper.thresholds import FIRST, LAST, LOOPS_FROM, Courses
 from gearmesh.solvers.response import Response
 from gearmesh.solvers.simulation import simulate
@@ -71,7 +72,8 @@ class SampledCourses(Courses):
         # All but the tuning and the start; to state a run anew each time would cost as much as it.
         self._stated = self._parameters.problem(self._variant, FIRST)
         self._kind = sample["kind"]
-        self._velocity = float(sample["initial_velocity"])
+        velocity = float(sample["initial_velocity"])
+        self._start = state_at(self._stated, v=velocity) if velocity else None
         self.grid = first_look(name)
         if self._kind == "down":
             self.grid = self.grid[::-1]
@@ -108,16 +110,19 @@ class SampledCourses(Courses):
     def problem(self, nu: float) -> Problem:
         """State the run at one tuning, which in a sweep starts where its neighbour has ended."""
         start = self._neighbours_end(nu) if self.swept else None
-        if start is None and self._velocity:
-            deflection = -2.0 / self._stated.bearing_stiffness
-            start = (1.0 - deflection, self._velocity, deflection, 0.0)
-        return replace(self._stated, nu=nu, initial_state=start)
+        return replace(self._stated, nu=nu, initial_state=start or self._start)
 
-    def _neighbours_end(self, nu: float) -> tuple[float, float, float, float] | None:
+    def _neighbours_end(self, nu: float) -> State | None:
         """Return the state at the end of the run before `nu` in the sweep, if there is one."""
         passed = self.grid < nu if self._kind == "up" else self.grid > nu
         known = self._known.get(float(self.grid[passed][-1])) if passed.any() else None
-        return known.final_state if known else None
+        if known is None or known.final_state is None:
+            return None
+        end = known.final_state
+        # Rounded as in the runs from which config/identified.yaml was found.
+        return replace(
+            end, y=(end.y - end.b) + end.b, v=(end.v - end.b_rate) + end.b_rate, periods=0
+        )
 
     def time_course(self, nu: float) -> Response:
         """Return the response at a tuning with its samples."""

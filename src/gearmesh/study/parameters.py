@@ -14,7 +14,7 @@ from typing import Self
 from pydantic import model_validator
 
 from gearmesh.model import stiffness
-from gearmesh.model.motion import Problem
+from gearmesh.model.problem import Problem
 from gearmesh.model.variants import Variant
 from gearmesh.study.schema import Section, quantity, validate
 

@@ -4,7 +4,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from gearmesh.model.motion import NORMAL_MESH
+from gearmesh.model.contact import NORMAL_MESH
 from gearmesh.paper.claims.evidence import Evidence
 from gearmesh.paper.claims.fig2 import LUBRICANT
 from gearmesh.paper.thresholds import STROBED_AT
