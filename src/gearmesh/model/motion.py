@@ -56,6 +56,15 @@ class Mode:
     slip_sign: int = 1
 
 
+def _sine(angle: float) -> float:
+    """Return the sine of a float, or of a series by its own method."""
+    return angle.sin() if hasattr(angle, "sin") else math.sin(angle)
+
+
+def _cosine(angle: float) -> float:
+    return angle.cos() if hasattr(angle, "cos") else math.cos(angle)
+
+
 def mesh_phase(problem: Problem, time: float) -> float:
     """Return the mesh phase at `time`, in mesh periods from t = 0 of eq. (4)."""
     return time / problem.period
@@ -73,8 +82,8 @@ def levers(problem: Problem, time: float, q) -> tuple[float, float]:
     """Return dy/dphi_3 and dy/dphi_2 in R_b: run-out changes the lever of the normal force."""
     angle_3, angle_2 = angles(problem, time, q)
     return (
-        1.0 + problem.eccentricity_3 / problem.base_radius * math.cos(angle_3),
-        1.0 + problem.eccentricity_2 / problem.base_radius * math.cos(angle_2),
+        1.0 + problem.eccentricity_3 / problem.base_radius * _cosine(angle_3),
+        1.0 + problem.eccentricity_2 / problem.base_radius * _cosine(angle_2),
     )
 
 
@@ -83,8 +92,8 @@ def deviation(problem: Problem, time: float) -> tuple[float, float]:
     value = rate = 0.0
     for n, (cosine, sine) in enumerate(problem.deviation, start=1):
         angle = n * problem.nu * time
-        value += cosine * math.cos(angle) + sine * math.sin(angle)
-        rate += n * problem.nu * (sine * math.cos(angle) - cosine * math.sin(angle))
+        value += cosine * _cosine(angle) + sine * _sine(angle)
+        rate += n * problem.nu * (sine * _cosine(angle) - cosine * _sine(angle))
     return value, rate
 
 
@@ -102,11 +111,11 @@ def relative_motion(problem: Problem, time: float, q, v) -> tuple[float, float]:
     angle_3, angle_2 = angles(problem, time, q)
     f, f_rate = deviation(problem, time)
     y = q[ROTATION_3] + q[ROTATION_2] + q[Y_3] - q[Y_2] + f
-    y += problem.eccentricity_3 * math.sin(angle_3) - problem.eccentricity_2 * math.sin(angle_2)
+    y += problem.eccentricity_3 * _sine(angle_3) - problem.eccentricity_2 * _sine(angle_2)
     lever_3, lever_2 = levers(problem, time, q)
     rate = lever_3 * v[ROTATION_3] + lever_2 * v[ROTATION_2] + v[Y_3] - v[Y_2] + f_rate
-    rate += problem.eccentricity_3 * problem.rotation_speed * math.cos(angle_3)
-    rate += problem.eccentricity_2 * problem.rotation_speed * math.cos(angle_2)
+    rate += problem.eccentricity_3 * problem.rotation_speed * _cosine(angle_3)
+    rate += problem.eccentricity_2 * problem.rotation_speed * _cosine(angle_2)
     return y, rate
 
 
@@ -123,9 +132,9 @@ def run_out_argument(problem: Problem, time: float, q, v) -> float:
     angle_3, angle_2 = angles(problem, time, q)
     speed_3 = problem.rotation_speed + v[ROTATION_3] / problem.base_radius
     speed_2 = problem.rotation_speed + v[ROTATION_2] / problem.base_radius
-    return problem.eccentricity_3 * speed_3 * math.sin(
+    return problem.eccentricity_3 * speed_3 * _sine(
         angle_3
-    ) - problem.eccentricity_2 * speed_2 * math.sin(angle_2)
+    ) - problem.eccentricity_2 * speed_2 * _sine(angle_2)
 
 
 def bearing_damping(problem: Problem) -> float:
