@@ -19,7 +19,7 @@ extensions = [
     "sphinx.ext.napoleon",
 ]
 exclude_patterns = ["_build"]
-nitpicky = False
+templates_path = ["_templates"]
 
 # Pages: Markdown with equations. The code of a page runs when the page is built, in an empty
 # folder, and a cell that fails ends the build.
@@ -38,6 +38,7 @@ autodoc_member_order = "bysource"
 autodoc_typehints = "signature"
 autodoc_preserve_defaults = True
 autosummary_generate = True
+suppress_warnings = ["ref.python"]  # a name in an annotation may belong to two modules
 napoleon_google_docstring = False
 napoleon_use_ivar = True
 napoleon_use_rtype = False
