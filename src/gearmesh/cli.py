@@ -87,7 +87,7 @@ def _parser() -> _Parser:
 
 
 def _load(options: argparse.Namespace):
-    from gearmesh.study.configuration import load_study
+    from gearmesh.study.loading import load_study
 
     path = options.config or paths.PAPER
     if options.config is None and not path.exists():
@@ -97,7 +97,8 @@ def _load(options: argparse.Namespace):
 
 def _simulate(options: argparse.Namespace) -> int:
     from gearmesh.model.damping import variant
-    from gearmesh.study.configuration import Case, read_nu
+    from gearmesh.study.cases import Case
+    from gearmesh.study.frequencies import read_nu
 
     try:
         nu = read_nu(options.nu)
@@ -112,8 +113,8 @@ def _simulate(options: argparse.Namespace) -> int:
 
     [response] = simulate(
         [parameters.problem(case.variant, case.nu)],
-        parameters.solver.tolerance,
-        parameters.run.samples_per_period,
+        parameters.tolerance,
+        parameters.samples_per_period,
     )
     casefile.write_case(
         options.output,
@@ -123,7 +124,7 @@ def _simulate(options: argparse.Namespace) -> int:
     if response.status != "ok":
         print(f"gearmesh: {options.output}: not integrated: {response.status}", file=sys.stderr)
         return NOT_INTEGRATED
-    deflection = parameters.assumed.static_deflection
+    deflection = parameters.static_deflection
     print(
         f"{options.output}: {case.variant.name} at nu_s = {case.nu:g}, "
         f"y from {response.y_min * deflection:.6g} to {response.y_max * deflection:.6g} mm"
@@ -162,7 +163,7 @@ def _variants(options: argparse.Namespace) -> int:
 
 
 def _parameters(options: argparse.Namespace) -> int:
-    from gearmesh.study.parameters import DERIVATIONS, KINDS, rows
+    from gearmesh.study.pair import DERIVATIONS, KINDS, rows
 
     study = _load(options)
     table = [("parameter", "symbol", "value", "unit", "kind", "meaning, or reason")]
@@ -173,7 +174,7 @@ def _parameters(options: argparse.Namespace) -> int:
             key = f"{section}.{row.name}"
             table.append((key, row.symbol, _text(value), row.unit, kind, reason))
     for item in DERIVATIONS:
-        value = _text(item.value(study.parameters))
+        value = _text(item.value(study.pair))
         table.append((item.name, item.symbol, value, item.unit, "derived", item.formula))
     _print_table(table)
     return 0

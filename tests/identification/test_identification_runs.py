@@ -24,7 +24,7 @@ def sample(parameters):
 
 
 def test_the_sample_of_a_study_is_the_study(parameters, sample):
-    again = design.parameters_of(sample, parameters)
+    again = design.pair_of(sample, parameters)
     for variant_name in ("c-material", "d-both"):
         one, other = (p.problem(variant(variant_name), 0.7) for p in (parameters, again))
         for name in one.__slots__:
@@ -81,7 +81,7 @@ def test_a_sweep_goes_on_from_its_neighbour(parameters, sample, kind):
     by_hand = replace(
         parameters.problem(variant("b-lubricant"), second), initial_state=start.final_state
     )
-    assert following.y_max == simulate([by_hand], parameters.solver.tolerance)[0].y_max
+    assert following.y_max == simulate([by_hand], parameters.tolerance)[0].y_max
     # Off the grid a run starts from the same neighbour as its next place on the grid.
     between = 0.5 * (first + second)
     assert courses.problem(between).initial_state == start.final_state

@@ -34,7 +34,7 @@ from gearmesh.paper.claims import (
     write_entries,
 )
 from gearmesh.paper.claims.checking import check_figure
-from gearmesh.study.configuration import load_study
+from gearmesh.study.loading import load_study
 
 FIGURES = ("printed", *paths.NOTEBOOK_NAMES)
 
@@ -53,7 +53,7 @@ def claim(**changes):
 
 @pytest.fixture(scope="module")
 def parameters():
-    return load_study(paths.PAPER).parameters
+    return load_study(paths.PAPER).pair
 
 
 @pytest.fixture(scope="module")
@@ -379,9 +379,9 @@ def course(parameters, **fields):
     phase = np.arange(PERIODS * PER_PERIOD) / PER_PERIOD
     half_width = 0.2845
     double = np.abs(phase - np.round(phase)) < half_width
-    c_max, c_min = parameters.printed.mesh_stiffness_max, parameters.stiffness_min
+    c_max, c_min = parameters.mesh_stiffness_max, parameters.stiffness_min
     made = {
-        "time": (phase - parameters.assumed.initial_phase) * 2.0,
+        "time": (phase - parameters.initial_phase) * 2.0,
         "y_rel": np.ones(phase.size),
         "stiffness": np.where(double, c_max, c_min),
         "regime": np.ones(phase.size, int),
@@ -389,7 +389,7 @@ def course(parameters, **fields):
     }
     made |= {name: value(phase) if callable(value) else value for name, value in fields.items()}
     if "a_rel" not in made:
-        heavy = 1 + 2 * parameters.printed.reduced_mass / parameters.assumed.body_mass
+        heavy = 1 + 2 * parameters.reduced_mass / parameters.body_mass
         made["a_rel"] = -heavy * made["stiffness"] / parameters.stiffness_mean * made["y_rel"]
     data = {name: ("sample", value) for name, value in made.items()}
     return xr.Dataset(data | {"mesh_period": ((), 2.0)})

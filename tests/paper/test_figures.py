@@ -29,7 +29,7 @@ def bifurcation(small_run):
 @pytest.fixture(scope="module")
 def courses(small_run, small_study):
     wanted = ("c-lubricant", "c-material", "c-material-5x")
-    return orbit.read_time_courses(small_run / paths.CASES, small_study.study.time_courses, *wanted)
+    return orbit.read_time_courses(small_run / paths.CASES, small_study.time_courses, *wanted)
 
 
 @pytest.fixture(scope="module")
@@ -246,7 +246,7 @@ def test_scales_come_from_the_parameters_of_the_file(courses, small_study):
     assumed = small_study.assumed
     assert found.static_deflection == assumed.static_deflection
     assert found.backlash == assumed.backlash / assumed.static_deflection
-    assert (found.kept_periods, found.damping) == (21, small_study.printed.damping)
+    assert (found.kept_periods, found.damping) == (21, small_study.damping)
 
 
 @pytest.mark.parametrize("module", [fig2, fig3])

@@ -12,7 +12,7 @@ from gearmesh.model.damping import variant
 from gearmesh.paper import thresholds
 from gearmesh.solvers.response import MAXIMUM, MINIMUM, Response
 from gearmesh.solvers.simulation import simulate
-from gearmesh.study.configuration import load_study
+from gearmesh.study.loading import load_study
 
 WIDTH = thresholds.WIDTH
 
@@ -218,7 +218,7 @@ def test_failed_runs_are_not_a_number_and_stop_nothing():
 
 @pytest.fixture(scope="module")
 def parameters():
-    return load_study(paths.PAPER).parameters
+    return load_study(paths.PAPER).pair
 
 
 def test_responses_are_run_once(parameters, monkeypatch):
@@ -242,7 +242,7 @@ def test_thresholds_of_the_paper_stand_where_the_model_changes(parameters):
     assert json.loads(json.dumps(found, allow_nan=False)) == found
 
     def run(name, nu):
-        return simulate([parameters.problem(variant(name), nu)], parameters.solver.tolerance)[0]
+        return simulate([parameters.problem(variant(name), nu)], parameters.tolerance)[0]
 
     end = found["loop_end"]["c-material"]
     assert run("c-material", end - WIDTH).turning_points_per_period == 4

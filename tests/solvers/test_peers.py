@@ -15,7 +15,7 @@ import numpy as np
 import pytest
 
 from gearmesh.model.damping import VARIANTS, variant
-from gearmesh.study.configuration import load_study
+from gearmesh.study.loading import load_study
 
 pytest.importorskip(
     "heyoka", reason="heyoka is not installed: pip install -r requirements-bench.in"
@@ -32,7 +32,7 @@ AGREEMENT = 1e-8
 TIGHT = 1e-13
 
 
-PARAMETERS = load_study(ROOT / "config" / "paper.yaml").parameters.replace(
+PARAMETERS = load_study(ROOT / "config" / "paper.yaml").pair.replace(
     {
         "assumed.backlash": "40 um",
         "assumed.damping_length": "5 um",

@@ -8,7 +8,7 @@ from gearmesh.identification.design import Sample, stated
 from gearmesh.identification.settings import FACTORS, Range, Settings
 from gearmesh.paper.claims import REPRODUCED, Claim
 from gearmesh.report.presentation import environment, number
-from gearmesh.study.parameters import Parameters
+from gearmesh.study.pair import Pair
 
 ANY = "any"
 """What is said of a parameter that the claims say nothing about."""
@@ -50,7 +50,7 @@ def section(
     found: Mapping[str, Any],
     ledger: Sequence[Claim],
     settings: Settings,
-    study: Parameters,
+    study: Pair,
     figures: Mapping[str, str] | None = None,
 ) -> str:
     """Return the findings as HTML.
@@ -63,7 +63,7 @@ def section(
         What the claims state.
     settings : Settings
         Ranges of the plausible space.
-    study : Parameters
+    study : Pair
         The values of the study, shown beside the regions.
     figures : mapping of str to str, optional
         Places of the figures ``regions`` and ``sensitivity``, without suffix; the notebook draws

@@ -3,7 +3,7 @@
 A notebook or a rule needs these calls::
 
     ledger = load_ledger(paths.CLAIMS)
-    evidence = Evidence(parameters=study.parameters, thresholds=json.loads(...), time_courses={...})
+    evidence = Evidence(pair=study.pair, thresholds=json.loads(...), time_courses={...})
     entries = checking.check_figure("fig2", evidence, ledger, paths.check_file("fig2"))
     print(verdict(collect(ledger, all_check_files, paths.LEDGER)))
 

@@ -6,7 +6,7 @@ from typing import Any
 
 from gearmesh.errors import InputError
 from gearmesh.paper.claims import fig2, fig3, fig4, fig5, fig6, fig7, printed
-from gearmesh.paper.claims.evidence import Evidence, NotInStudy
+from gearmesh.paper.claims.evidence import Evidence, NotInStudy, NotLocated
 from gearmesh.paper.claims.ledger import (
     DEVIATES,
     NOT_TESTABLE,
@@ -41,6 +41,8 @@ def check(claim: Claim, evidence: Evidence) -> Entry:
         measured, detail = MEASURES[claim.id](evidence)
     except NotInStudy as error:
         found = {"status": NOT_TESTABLE, "detail": f"not in this study: {error}", "judged": False}
+    except NotLocated as error:
+        found = {"status": NOT_TESTABLE, "detail": f"not located: {error}"}
     else:
         status = REPRODUCED if holds(claim, measured) else DEVIATES
         found = {"measured": measured, "status": status, "detail": detail}

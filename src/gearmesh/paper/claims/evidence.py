@@ -5,14 +5,18 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
-from gearmesh.study.parameters import Parameters
+from gearmesh.study.pair import Pair
 
 if TYPE_CHECKING:
     import xarray as xr
 
 
 class NotInStudy(LookupError):
-    """The study lacks what a claim speaks of: a variant, a frequency."""
+    """The study does not have what a claim speaks of: a variant, a frequency."""
+
+
+class NotLocated(LookupError):
+    """A threshold depends on a run that could not be integrated."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -21,7 +25,7 @@ class Evidence:
 
     Attributes
     ----------
-    parameters : Parameters
+    pair : Pair
         The parameters of the study.
     thresholds : mapping
         `results/datasets/thresholds.json`: what `gearmesh.paper.thresholds.locate` returns.
@@ -29,24 +33,32 @@ class Evidence:
         (variant, nu) -> case file with its time course, opened with xarray (Figs. 4 and 7).
     """
 
-    parameters: Parameters
+    pair: Pair
     thresholds: Mapping[str, Mapping[str, Any]] = field(default_factory=dict)
     time_courses: "Mapping[tuple[str, float], xr.Dataset]" = field(default_factory=dict)
 
     def located(self, observable: str, names: Iterable[str]) -> dict[str, Any]:
-        """Return an observable for each of `names`; raise NotInStudy if one is lacking.
+        """Return an observable for each of `names`; what does not exist is not-a-number.
 
-        What was looked for and does not exist (None in `thresholds`) is not-a-number.
+        Raises
+        ------
+        NotInStudy
+            If one of them is missing.
+        NotLocated
+            If a run that one of them depends on failed.
         """
         known = self.thresholds.get(observable, {})
         names = list(names)
-        lacking = [name for name in names if name not in known]
-        if lacking:
-            raise NotInStudy(f"{observable} of {', '.join(lacking)}")
+        missing = [name for name in names if name not in known]
+        if missing:
+            raise NotInStudy(f"{observable} of {', '.join(missing)}")
+        for name in names:
+            if isinstance(known[name], Mapping) and "not_located" in known[name]:
+                raise NotLocated(f"{observable} of {name}: {known[name]['not_located']}")
         return {name: _as_numbers(known[name]) for name in names}
 
     def time_course(self, variant: str, nu: float) -> "xr.Dataset":
-        """Return a case with its time course; raise NotInStudy if it is lacking."""
+        """Return a case with its time course; raise NotInStudy if it is missing."""
         for (name, at), case in self.time_courses.items():
             if name == variant and abs(at - nu) < 1e-9 and "y_rel" in case:
                 return case

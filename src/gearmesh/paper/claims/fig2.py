@@ -1,7 +1,8 @@
 """Fig. 2: resonance characteristics of a to d and h."""
 
+from gearmesh.dynamics.response_curves import WIDTH
 from gearmesh.paper.claims.evidence import Evidence
-from gearmesh.paper.thresholds import NONLINEAR, WIDTH
+from gearmesh.paper.thresholds import NONLINEAR
 
 LUBRICANT = [f"{letter}-lubricant" for letter in NONLINEAR]
 ALL_LUBRICANT = ["b-lubricant", *LUBRICANT]
@@ -52,8 +53,7 @@ def rounded_peaks(evidence: Evidence) -> tuple[dict[str, dict[str, float]], str]
 
 def no_inverse_mesh(evidence: Evidence) -> tuple[dict[str, float], str]:
     """F2.6: how far c, d and h with • stay away from inverse mesh."""
-    assumed = evidence.parameters.assumed
-    backlash = assumed.backlash / assumed.static_deflection
+    backlash = evidence.pair.backlash / evidence.pair.static_deflection
     least = evidence.located("lowest", LUBRICANT)
     return {name: y + backlash for name, y in least.items()}, "least y + s, in y_st"
 

@@ -28,9 +28,9 @@ def corners(case: "xr.Dataset", evidence: Evidence) -> dict[str, float]:
         ``at the switches``: jumps of y'' there, as a multiple of what the jump of C y makes;
         ``elsewhere``: the greatest jump elsewhere, relative to the typical one at the switches.
     """
-    parameters = evidence.parameters
+    pair = evidence.pair
     y, steps = case["y_rel"].values, np.diff(case["a_rel"].values)
-    stiffening = np.diff(case["stiffness"].values) / parameters.stiffness_mean
+    stiffening = np.diff(case["stiffness"].values) / pair.stiffness_mean
     meshing = np.convolve(case["regime"].values == NORMAL_MESH, np.ones(4), "valid") == 4
     switching = stiffening != 0
     found = steps[1:-1] - (steps[:-2] + steps[2:]) / 2
@@ -39,7 +39,7 @@ def corners(case: "xr.Dataset", evidence: Evidence) -> dict[str, float]:
     if not at_switch.any() or not beside.any():
         return {"at the switches": np.nan, "elsewhere": np.nan}
     # A force on the mesh line moves the wheels by turning them and the bodies by pushing them.
-    mobility = 1 + 2 * parameters.printed.reduced_mass / parameters.assumed.body_mass
+    mobility = 1 + 2 * pair.reduced_mass / pair.body_mass
     due = -mobility * (stiffening * (y[1:] + y[:-1]) / 2)[1:-1][at_switch]
     jump = found[at_switch]
     return {

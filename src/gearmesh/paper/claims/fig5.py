@@ -18,7 +18,7 @@ def loops_vanish(evidence: Evidence) -> tuple[dict[str, float], str]:
 def distance_to_switch(evidence: Evidence, name: str) -> float:
     """Return how far from a switch of C(t) the last loop closes, in mesh periods."""
     place = evidence.located("loop_place", [name])[name]
-    phases = switch_phases(evidence.parameters.printed.contact_ratio)
+    phases = switch_phases(evidence.pair.contact_ratio)
     return min(abs((place - phase + 0.5) % 1.0 - 0.5) for phase in phases)
 
 

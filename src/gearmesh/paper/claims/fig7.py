@@ -21,7 +21,7 @@ def _courses(evidence: Evidence) -> "dict[str, xr.Dataset]":
 def mesh_phase(case: "xr.Dataset", evidence: Evidence) -> np.ndarray:
     """Return the phase of the mesh period at every sample; 0 is the middle of the C_max pulse."""
     periods = case["time"].values / float(case["mesh_period"])
-    return (periods + evidence.parameters.assumed.initial_phase) % 1.0
+    return (periods + evidence.pair.initial_phase) % 1.0
 
 
 def friction_sense(evidence: Evidence) -> tuple[dict[str, dict[str, float]], str]:
@@ -29,7 +29,7 @@ def friction_sense(evidence: Evidence) -> tuple[dict[str, dict[str, float]], str
     found = {}
     for name, case in _courses(evidence).items():
         phase, force = mesh_phase(case, evidence), case["force_friction"].values
-        double = in_double_contact(phase, evidence.parameters.printed.contact_ratio)
+        double = in_double_contact(phase, evidence.pair.contact_ratio)
         # A sample on a switch belongs to either side of it.
         inner = double & np.roll(double, 1) & np.roll(double, -1)
         turns = np.flatnonzero(force[1:] * force[:-1] < 0)

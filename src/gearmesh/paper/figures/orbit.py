@@ -40,13 +40,12 @@ class Scale:
 def scale(dataset: xr.Dataset) -> Scale:
     """Read the scales from the parameters that `dataset` carries."""
     parameters = json.loads(dataset.attrs["parameters"])
-    teeth = parameters["printed"]["teeth"]
-    run, assumed = parameters["run"], parameters["assumed"]
+    y_st = parameters["static_deflection"]
     return Scale(
-        static_deflection=assumed["static_deflection"],
-        backlash=assumed["backlash"] / assumed["static_deflection"],
-        kept_periods=run["kept_revolutions"] * teeth,
-        damping=parameters["printed"]["damping"],
+        static_deflection=y_st,
+        backlash=parameters["backlash"] / y_st,
+        kept_periods=parameters["kept_revolutions"] * parameters["teeth"],
+        damping=parameters["damping"],
     )
 
 

@@ -1,9 +1,9 @@
-"""Responses of one sample against nu_s: separate runs, or sweeps up or down.
+"""Response curves of one sample: separate runs, or sweeps up or down.
 
-The ledger's own searches (`gearmesh.paper.thresholds`) run on these courses. They look less
-closely at first than for the study itself, and narrow what they find to ± 0.001; where a coarse
-look is enough depends on the variant. All first looks of many samples are run in one go, sweeps
-step by step, so that the solver's lanes are never empty.
+The searches of the ledger (`gearmesh.paper.thresholds`) work on these curves. They scan less
+closely than for the study itself and locate thresholds to ± 0.001; how coarse a scan may be
+depends on the variant. The scans of many samples are run together, sweeps step by step, so that
+the solver's lanes are never empty.
 """
 
 from collections.abc import Iterable, Sequence
@@ -11,27 +11,29 @@ from dataclasses import replace
 
 import numpy as np
 
-from gearmesh.identification.design import Sample, parameters_of
+from gearmesh.dynamics.response_curves import ResponseCurve
+from gearmesh.identification.design import Sample, pair_of
+from gearmesh.model.damping import variant
 from gearmesh.model.motion import Problem
-from gearmesh.paper.thresholds import FIRST, LAST, LOOPS_FROM, Courses
+from gearmesh.paper.thresholds import FIRST, LAST, LOOPS_FROM
 from gearmesh.solvers.response import Response
 from gearmesh.solvers.simulation import simulate
-from gearmesh.study.parameters import Parameters
+from gearmesh.study.pair import Pair
 
 ACCURACY = 1e-3
 """Thresholds in nu_s are located to this."""
 
-# A ninth of the first decides between jump and slope (`gearmesh.paper.thresholds.JUMP_WIDTH`),
+# A ninth of the first decides between jump and slope (`response_curves.JUMP_WIDTH`),
 # ninths of the others locate to `ACCURACY`: one refinement, eight runs, is enough.
 _FINE, _MEDIUM, _COARSE, _COARSEST = 0.004, 0.01, 0.015, 0.02
 _JUMPS_UP_TO = 0.92
 
 
-def first_look(name: str) -> np.ndarray:
-    """Return the tunings at which a variant is looked at first, ascending.
+def scan_of(name: str) -> np.ndarray:
+    """Return the mesh frequencies of the scan of a variant, ascending.
 
-    Damping in the lubricant alone leaves jumps and long transients: they need a close look. With
-    linear damping in the material there are jumps too, but wide apart. All other courses are
+    Damping in the lubricant alone leaves jumps and long transients: they need a close scan. With
+    linear damping in the material there are jumps too, but wide apart. All other curves are
     smooth; the loops of c-material are followed down to `LOOPS_FROM`.
     """
     if name.endswith("lubricant"):
@@ -50,14 +52,14 @@ def _places(low: float, high: float, spacing: float) -> np.ndarray:
     return np.round(np.linspace(low, high, round((high - low) / spacing) + 1), 10)
 
 
-class SampledCourses(Courses):
-    """The courses of one variant of a sample.
+class SampledCurve(ResponseCurve):
+    """The response curve of one variant of a sample.
 
     Parameters
     ----------
     sample : Sample
         Values of the open parameters.
-    study : Parameters
+    study : Pair
         All others.
     name : str
         Name of the variant.
@@ -66,47 +68,41 @@ class SampledCourses(Courses):
     width = 2.0 * ACCURACY
     steepest = 1
 
-    def __init__(self, sample: Sample, study: Parameters, name: str) -> None:
-        super().__init__(parameters_of(sample, study), name)
-        # All but the tuning and the start; to state a run anew each time would cost as much as it.
-        self._stated = self._parameters.problem(self._variant, FIRST)
+    def __init__(self, sample: Sample, study: Pair, name: str) -> None:
+        pair = pair_of(sample, study)
+        super().__init__(self.problem, pair.tolerance, name)
+        # All but ν_s and the start: to state a run anew each time would cost as much as the run.
+        self._stated = pair.problem(variant(name), FIRST)
+        self._samples_per_period = pair.samples_per_period
         self._kind = sample["kind"]
         self._velocity = float(sample["initial_velocity"])
-        self.grid = first_look(name)
+        self.grid = scan_of(name)
         if self._kind == "down":
             self.grid = self.grid[::-1]
 
     @property
     def swept(self) -> bool:
-        """Whether each tuning starts from the end of its neighbour's run."""
+        """Whether each run starts from the end of its neighbour's run."""
         return self._kind != "separate"
 
+    @property
+    def tolerance(self) -> float:
+        """Tolerance of the runs."""
+        return self._tolerance
+
     def scan(self, low: float, high: float) -> np.ndarray:
-        """Return the two ends and the places of the first look between them."""
+        """Return the two ends and the places of the scan between them."""
         if high < low:
             return np.empty(0)
         inside = self.grid[(self.grid > low) & (self.grid < high)]
         return np.unique(np.concatenate([[low], inside, [high]]))
 
-    def at(self, nu: Iterable[float]) -> list[Response]:
-        """Return the responses at tunings nu_s, in their order."""
-        wanted = [float(x) for x in nu]
-        new = [x for x in dict.fromkeys(wanted) if x not in self._known]
-        problems = [self.problem(x) for x in new]
-        self.learn(new, simulate(problems, self.tolerance, estimate_errors=False))
-        return [self._known[x] for x in wanted]
-
     def learn(self, nu: Iterable[float], responses: Iterable[Response]) -> None:
         """Take responses in."""
         self._known.update(zip(map(float, nu), responses, strict=True))
 
-    @property
-    def tolerance(self) -> float:
-        """Tolerance of the runs."""
-        return self._parameters.solver.tolerance
-
     def problem(self, nu: float) -> Problem:
-        """State the run at one tuning, which in a sweep starts where its neighbour has ended."""
+        """State the run at one ν_s, which in a sweep starts where its neighbour has ended."""
         start = self._neighbours_end(nu) if self.swept else None
         if start is None and self._velocity:
             deflection = -2.0 / self._stated.bearing_stiffness
@@ -120,24 +116,25 @@ class SampledCourses(Courses):
         return known.final_state if known else None
 
     def time_course(self, nu: float) -> Response:
-        """Return the response at a tuning with its samples."""
-        per_period = self._parameters.run.samples_per_period
-        return simulate([self.problem(nu)], self.tolerance, per_period, estimate_errors=False)[0]
+        """Return the response at one ν_s with its samples."""
+        return simulate(
+            [self.problem(nu)], self.tolerance, self._samples_per_period, estimate_errors=False
+        )[0]
 
 
-def look(courses: Sequence[SampledCourses]) -> None:
-    """Run the first look of all `courses`: separate runs at once, sweeps side by side."""
-    separate = [(c, float(nu)) for c in courses if not c.swept for nu in c.grid]
+def scan_all(curves: Sequence[SampledCurve]) -> None:
+    """Run the scans of all `curves`: separate runs at once, sweeps side by side."""
+    separate = [(c, float(nu)) for c in curves if not c.swept for nu in c.grid]
     _run(separate)
-    sweeps = [c for c in courses if c.swept]
+    sweeps = [c for c in curves if c.swept]
     for step in range(max((c.grid.size for c in sweeps), default=0)):
         _run([(c, float(c.grid[step])) for c in sweeps if step < c.grid.size])
 
 
-def _run(wanted: Sequence[tuple[SampledCourses, float]]) -> None:
+def _run(wanted: Sequence[tuple[SampledCurve, float]]) -> None:
     if not wanted:
         return
-    problems = [courses.problem(nu) for courses, nu in wanted]
+    problems = [curve.problem(nu) for curve, nu in wanted]
     found = simulate(problems, wanted[0][0].tolerance, estimate_errors=False)
-    for (courses, nu), response in zip(wanted, found, strict=True):
-        courses.learn([nu], [response])
+    for (curve, nu), response in zip(wanted, found, strict=True):
+        curve.learn([nu], [response])
