@@ -1,18 +1,20 @@
 """How Sphinx builds this site; `make docs` runs it. Nothing here needs a network."""
 
 import sys
-from importlib.metadata import version as installed
 from pathlib import Path
+
+import gearmesh
 
 sys.path.insert(0, str(Path(__file__).parent / "_extensions"))
 
 project = "gearmesh"
 author = "the gearmesh authors"
 project_copyright = author
-version = release = installed("gearmesh")
+version = release = gearmesh.__version__
 
 extensions = [
     "mathml",
+    "subscripts",
     "myst_nb",
     "sphinx.ext.autodoc",
     "sphinx.ext.autosummary",
@@ -26,6 +28,7 @@ templates_path = ["_templates"]
 myst_enable_extensions = ["colon_fence", "deflist", "dollarmath"]
 myst_heading_anchors = 3
 nb_execution_mode = "force"
+nb_execution_show_tb = True
 nb_execution_in_temp = True
 nb_execution_raise_on_error = True
 nb_execution_timeout = 180
@@ -33,7 +36,11 @@ nb_merge_streams = True
 
 # Reference: what the docstrings say.
 default_role = "code"  # `name` in a docstring is code
-autodoc_default_options = {"members": True, "show-inheritance": True}
+autodoc_default_options = {
+    "members": True,
+    "show-inheritance": True,
+    "exclude-members": "model_config, model_post_init",  # of pydantic
+}
 autodoc_member_order = "bysource"
 autodoc_typehints = "signature"
 autodoc_preserve_defaults = True
