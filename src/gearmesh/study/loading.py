@@ -12,7 +12,7 @@ from gearmesh.errors import InputError
 from gearmesh.study import yamlfile
 from gearmesh.study.cases import Plan, Study
 from gearmesh.study.frequencies import read_nu
-from gearmesh.study.pair import Pair
+from gearmesh.study.pair import DERIVED, Pair
 from gearmesh.study.provenance import Statement, read_statement
 from gearmesh.study.schema import nearest, shown, validate
 
@@ -82,6 +82,9 @@ def _hint(key: str, known: Iterable[str]) -> str:
     """Suggest the nearest name, also for a key with a section before it."""
     known = list(known)
     last = key.rpartition(".")[2]
+    for computed in DERIVED:
+        if computed.name == last:
+            return f"; it is computed as {computed.formula}"
     if last in known:
         return f" (did you mean '{last}'?)"
     return nearest(last, known) or "; 'gearmesh parameters' lists all parameters"

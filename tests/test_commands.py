@@ -46,8 +46,8 @@ def test_help_and_version(gearmesh):
 
 def test_help_imports_nothing_heavy(root):
     code = (
-        "import sys, contextlib, gearmesh.cli\n"
-        "with contextlib.suppress(SystemExit): gearmesh.cli.main(['--help'])\n"
+        "import sys, contextlib, gearmesh.commands.main\n"
+        "with contextlib.suppress(SystemExit): gearmesh.commands.main.main(['--help'])\n"
         "sys.exit(bool({'numba', 'numpy', 'pint', 'pydantic'} & set(sys.modules)))"
     )
     run = subprocess.run([sys.executable, "-c", code], cwd=root, capture_output=True, timeout=60)
