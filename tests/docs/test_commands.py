@@ -20,7 +20,9 @@ PAGES = sorted(
     for path in (ROOT / "README.md", ROOT / "CONTRIBUTING.md", *(ROOT / "docs").rglob("*.md"))
     if "_build" not in path.parts
 )
-FENCE = re.compile(r"^(?P<indent> *)```(?P<kind>[^\n`]*)\n(?P<code>.*?)^(?P=indent)```", re.M | re.S)
+FENCE = re.compile(
+    r"^(?P<indent> *)```(?P<kind>[^\n`]*)\n(?P<code>.*?)^(?P=indent)```", re.M | re.S
+)
 SHELL = ("", "sh", "bash", "console")
 SHOWN = ("text", "yaml")
 """Kinds that are only read: files, output, and code that belongs into a file."""
