@@ -19,7 +19,7 @@ Start = tuple[object, object]
 
 def paper_file() -> AbstractContextManager[Path]:
     """Return the file of the paper's study, which the package carries, as a context."""
-    return as_file(files("gearmesh.paper") / "paper.yaml")
+    return as_file(files("gearmesh.reproduction") / "paper.yaml")
 
 
 def paper() -> Pair:
