@@ -6,6 +6,7 @@ CORES ?=
 BIN := .venv/bin
 STAMP := .venv/.installed
 BENCH_STAMP := .venv/.installed-bench
+DOCS_STAMP := .venv/.installed-docs
 PIP := $(BIN)/python -m pip install --quiet --disable-pip-version-check
 # Nothing without a hash is ever installed, so the few packages that come as sources are built
 # with the setuptools of the lock instead of one that pip would fetch for the purpose.
@@ -14,7 +15,7 @@ SNAKEMAKE := $(BIN)/snakemake --profile workflow/profiles/default $(if $(CORES),
 UV_COMPILE := uv pip compile --quiet --universal --python-version 3.11 --fork-strategy fewest \
 	--generate-hashes --no-annotate --no-header --no-emit-index-url
 
-.PHONY: help reproduce test bench lint identify lock clean
+.PHONY: help reproduce test bench lint docs identify lock clean
 .DELETE_ON_ERROR:
 
 help: ## show this list
@@ -30,19 +31,28 @@ test: $(STAMP) ## the whole test suite
 bench: $(BENCH_STAMP) ## the benchmarks, peers side by side
 	$(BIN)/python -m benchmarks
 
-lint: $(STAMP) ## formats and slips; notebooks without outputs
+lint: $(STAMP) ## all checks of form: formats, imports, types, workflow, notebooks
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
 	$(BIN)/snakefmt --check Snakefile workflow
+	$(BIN)/lint-imports --no-cache
+	$(BIN)/mypy
 	$(BIN)/python .ci/lint_workflow.py
 	$(BIN)/python .ci/lint_notebooks.py
+
+docs: $(DOCS_STAMP) ## the documentation site, in docs/_build/html
+	$(BIN)/sphinx-build --fail-on-warning --keep-going --quiet -b html docs docs/_build/html
+	$(BIN)/python .ci/lint_docs.py docs/_build/html
 
 identify: $(STAMP) ## infer the open parameters from the claims
 	$(SNAKEMAKE) identify
 	cp results/identification/identified.yaml config/identified.yaml
 
 lock: ## resolve the requirements again (needs uv)
-	$(UV_COMPILE) requirements.in requirements-dev.in --output-file requirements.lock
+	$(UV_COMPILE) requirements.in requirements-study.in requirements-dev.in \
+		--output-file requirements.lock
+	$(UV_COMPILE) requirements-docs.in --constraints requirements.lock \
+		--output-file requirements-docs.lock
 	$(UV_COMPILE) requirements-bench.in --constraints requirements.lock \
 		--output-file requirements-bench.lock
 
@@ -59,6 +69,10 @@ $(STAMP): requirements.lock
 	@$(LOCKED) -r .venv/first.txt
 	@$(LOCKED) -r requirements.lock
 	@$(PIP) --no-index --no-deps --no-build-isolation --editable .
+	@touch $@
+
+$(DOCS_STAMP): $(STAMP) requirements-docs.lock
+	@$(LOCKED) -r requirements-docs.lock
 	@touch $@
 
 # numbalsoda is built from source by tools that this lock names too: they come first. Where it

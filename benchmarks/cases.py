@@ -6,7 +6,7 @@ import numpy as np
 
 from gearmesh.model.problem import Problem
 from gearmesh.model.variants import variant
-from gearmesh.study.configuration import load_study
+from gearmesh.study.loading import load_study
 
 LETTERS = "bcd"
 SYMBOLS = ("material", "lubricant", "both")
@@ -28,7 +28,7 @@ def singles() -> dict[str, list[Problem]]:
 
 
 def _runs(frequencies) -> dict[str, list[Problem]]:
-    parameters = load_study(_STUDY).parameters
+    parameters = load_study(_STUDY).pair
     names = [f"{letter}-{symbol}" for letter in LETTERS for symbol in SYMBOLS]
     return {
         name: [parameters.problem(variant(name), float(nu)) for nu in frequencies] for name in names

@@ -10,8 +10,9 @@ from hypothesis import settings
 from project import Project
 from small_run import compute
 
-from gearmesh.study.configuration import Study, load_study
-from gearmesh.study.parameters import Parameters
+from gearmesh.study.cases import Study
+from gearmesh.study.loading import load_study
+from gearmesh.study.pair import Pair
 
 # Compilation and a busy machine make single examples slow; tests never judge times.
 settings.register_profile("gearmesh", deadline=None, derandomize=True)
@@ -31,8 +32,8 @@ def study() -> Study:
 
 
 @pytest.fixture(scope="session")
-def parameters(study: Study) -> Parameters:
-    return study.parameters
+def parameters(study: Study) -> Pair:
+    return study.pair
 
 
 @pytest.fixture(scope="session")

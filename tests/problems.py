@@ -7,7 +7,7 @@ import numpy as np
 
 from gearmesh.model.problem import Problem
 from gearmesh.model.variants import VARIANTS, variant
-from gearmesh.study.configuration import load_study
+from gearmesh.study.loading import load_study
 
 PAPER = Path(__file__).parents[1] / "config" / "paper.yaml"
 MEAN = 3.28954
@@ -41,11 +41,4 @@ def problem(nu=0.7, name="c-lubricant", **changes) -> Problem:
 
 def of_paper(name: str, nu: float, **changes: object) -> Problem:
     """Return a run of the paper's study with other parameters, in the units of the study."""
-    parameters = load_study(PAPER).parameters
-    sections = {
-        key: section
-        for section in type(parameters).model_fields
-        for key in type(getattr(parameters, section)).model_fields
-    }
-    stated = {f"{sections[key]}.{key}": value for key, value in changes.items()}
-    return parameters.replace(stated).problem(variant(name), nu)
+    return load_study(PAPER).pair.replace(**changes).problem(variant(name), nu)

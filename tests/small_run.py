@@ -4,18 +4,18 @@ from pathlib import Path
 
 from gearmesh.data import batches, casefile, datasets, paths
 from gearmesh.solvers.simulation import simulate
-from gearmesh.study.configuration import Study
+from gearmesh.study.cases import Study
 
 
 def compute(study: Study, root: Path) -> None:
     """Write the datasets of `study` and its cases with time courses below `root`."""
-    parameters = study.parameters
-    (batch,) = batches.partition(study.cases(), len(study.cases()))
+    parameters = study.pair
+    (batch,) = batches.partition(study.cases, len(study.cases))
     records = {}
-    for with_course, samples in ((False, 0), (True, parameters.run.samples_per_period)):
+    for with_course, samples in ((False, 0), (True, parameters.samples_per_period)):
         cases = [case for case in batch.cases if case.time_course == with_course]
         problems = [parameters.problem(case.variant, case.nu) for case in cases]
-        responses = simulate(problems, parameters.solver.tolerance, samples)
+        responses = simulate(problems, parameters.tolerance, samples)
         for case, response in zip(cases, responses, strict=True):
             records[case] = casefile.record(response, parameters)
     for case in (case for case in batch.cases if case.time_course):

@@ -13,7 +13,7 @@ from gearmesh.errors import InputError
 from gearmesh.model.variants import variant
 from gearmesh.solvers import simulation as integrator
 from gearmesh.solvers.response import Response
-from gearmesh.study.configuration import Case
+from gearmesh.study.cases import Case
 
 CASE = Case(variant("c-lubricant"), 0.66, time_course=True)
 
@@ -35,7 +35,7 @@ LISTED = {
 @pytest.fixture(scope="module")
 def response(parameters) -> Response:
     problem = parameters.problem(CASE.variant, CASE.nu)
-    return integrator.simulate([problem], parameters.solver.tolerance, 256)[0]
+    return integrator.simulate([problem], parameters.tolerance, 256)[0]
 
 
 @pytest.fixture
@@ -62,7 +62,7 @@ def test_every_variable_has_unit_and_name_and_lengths_stand_twice(written, param
         assert variable.attrs["long_name"], name
         assert variable.attrs["units"] in ("1", "s", "mm", "N", "N/mm"), name
         if variable.attrs["units"] == "mm":
-            scale = parameters.assumed.static_deflection
+            scale = parameters.static_deflection
             np.testing.assert_array_equal(variable, case[f"{name}_rel"] * scale)
             assert case[f"{name}_rel"].attrs["units"] == "1"
 
@@ -79,9 +79,9 @@ def test_attributes_say_how_it_was_made(written, parameters):
     stated = xr.open_dataset(written).attrs
     assert stated["Conventions"] == "CF-1.11"
     assert (stated["variant"], stated["nu_s"]) == ("c-lubricant", 0.66)
-    assert json.loads(stated["parameters"])["assumed"]["backlash"] == parameters.assumed.backlash
+    assert json.loads(stated["parameters"])["assumed"]["backlash"] == parameters.backlash
     assert stated["parameters_sha256"] == parameters.digest()
-    assert stated["solver_tolerance"] == parameters.solver.tolerance
+    assert stated["solver_tolerance"] == parameters.tolerance
     for name in ("gearmesh_version", "numba_version", "numpy_version", "physics_sources_sha256"):
         assert stated[name]
 

@@ -19,7 +19,6 @@ from gearmesh.identification import (
     inference,
     layout,
     prediction,
-    presentation,
     sensitivity,
     synthetic,
     table,
@@ -27,7 +26,8 @@ from gearmesh.identification import (
 )
 from gearmesh.identification.settings import FACTORS, KINDS, Range, load_settings
 from gearmesh.identification.wording import Statement
-from gearmesh.paper.claims import Claim, holds, load_ledger
+from gearmesh.report import identified
+from gearmesh.reproduction.claims import Claim, holds, load_ledger
 
 SETTINGS = paths.CONFIG / "identify.yaml"
 
@@ -404,7 +404,7 @@ def test_the_committed_findings_are_those_of_the_ledger(root):
 )
 def test_an_interval_names_the_ends_that_the_claims_set(region, said):
     bounds = Range(low=1.0, high=100.0, scale="log", reason="a test")
-    assert presentation.within(region, bounds) == said
+    assert identified.within(region, bounds) == said
 
 
 def test_run_out_is_told_by_what_it_costs():
@@ -412,7 +412,7 @@ def test_run_out_is_told_by_what_it_costs():
         "with friction": {"F1": 0.0, "F2": 0.5, "F3": 3.0, "F4": 0.0},
         "without friction": {"F1": 2.0, "F2": 3.0, "F3": 0.0, "F4": 0.0},
     }
-    costs = presentation.run_out_costs(found, ["F1", "F2", "F3"])
+    costs = identified.run_out_costs(found, ["F1", "F2", "F3"])
     assert costs == {
         "lost": ["F1"], "by_friction": ["F1"], "alone_lost": ["F3"], "need_friction": ["F3"],
         "alone_least": 2.0, "alone_fragile": ["F1"],
@@ -457,7 +457,7 @@ def test_the_text_on_run_out_follows_the_numbers(root, parameters, with_friction
     found = table.read(root / layout.IDENTIFIED)
     found["run-out"] = {"with friction": with_friction, "without friction": without}
     ledger, settings = load_ledger(root / paths.CLAIMS), load_settings(root / SETTINGS)
-    page = presentation.section(found, ledger, settings, parameters)
+    page = identified.section(found, ledger, settings, parameters)
     (told,) = (line for line in page.splitlines() if line.startswith("<p>Run-out"))
     assert re.search(said, told), told
 
@@ -511,7 +511,7 @@ def test_the_note_states_the_ranges_that_were_identified(root, factor):
 
 def test_the_study_lies_where_the_evidence_wants_it(root, parameters):
     found = table.read(root / layout.IDENTIFIED)
-    space, free = load_settings(root / SETTINGS), presentation.OPEN
+    space, free = load_settings(root / SETTINGS), identified.OPEN
     for reading in ("plausible", "natural"):
         for name, region in found["regions"][reading]["factors"].items():
             if name == "kind":

@@ -13,13 +13,13 @@ from hypothesis import strategies as st
 from gearmesh.data import paths
 from gearmesh.data.writing import write_text
 from gearmesh.identification import layout
-from gearmesh.paper.claims import Entry, Evidence, load_ledger, write_entries
-from gearmesh.paper.claims.checking import check_figure
-from gearmesh.paper.equations import EQUATIONS
 from gearmesh.report import page as report
 from gearmesh.report.notebook_page import notebook_page
 from gearmesh.report.presentation import claims_table, expected, found, number, typeset
-from gearmesh.study.parameters import Assumed
+from gearmesh.reproduction.claims import Entry, Evidence, load_ledger, write_entries
+from gearmesh.reproduction.claims.checking import check_figure
+from gearmesh.reproduction.equations import EQUATIONS
+from gearmesh.study.pair import Assumed
 
 
 class Page(HTMLParser):
@@ -68,7 +68,7 @@ def claim(**changes) -> Entry:
 def entries(root, study):
     """Return the whole ledger, with what the printed numbers give; the rest is not testable."""
     ledger = load_ledger(root / paths.CLAIMS)
-    evidence = Evidence(parameters=study.parameters)
+    evidence = Evidence(parameters=study.pair)
     figures = ("printed", *paths.NOTEBOOK_NAMES)
     return [entry for figure in figures for entry in check_figure(figure, evidence, ledger)]
 
@@ -184,8 +184,8 @@ def test_every_assumption_stands_with_its_reason(page, small_study):
 def test_the_numbers_of_the_study_are_on_the_page(page, small_study):
     assert "400\u202f000 N/mm" in page.text
     assert "328\u202f954 N/mm" in page.text
-    assert small_study.parameters.digest() in page.text
-    cases = small_study.cases()
+    assert small_study.pair.digest() in page.text
+    cases = small_study.cases
     assert (
         f"{len(cases)}, of which {sum(c.time_course for c in cases)} with time cours" in page.text
     )

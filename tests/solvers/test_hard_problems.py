@@ -151,8 +151,7 @@ def test_run_outs_that_cancel_leave_friction_undefined(angle, nu, friction):
     case = of_paper(
         "b-material",
         nu,
-        eccentricity_3="10 um",
-        eccentricity_2="10 um",
+        eccentricity="10 um",
         eccentricity_angle=angle,
         friction_coefficient=friction,
     )
@@ -166,7 +165,7 @@ def test_the_drift_of_the_mean_rotation_is_reported():
         "b-material",
         0.8,
         body_mass="3.123 kg",
-        eccentricity_3="100 um",
+        eccentricity=["100 um", "0 um"],
         friction_coefficient=0.1,
         revolutions=10,
     )

@@ -10,7 +10,9 @@ from hypothesis import strategies as st
 from gearmesh.data import paths
 from gearmesh.errors import InputError
 from gearmesh.model.variants import VARIANTS
-from gearmesh.study.configuration import Study, load_study, read_nu
+from gearmesh.study.cases import Study
+from gearmesh.study.frequencies import read_nu
+from gearmesh.study.loading import load_study
 
 fuzz = settings(
     max_examples=300, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture]
@@ -36,7 +38,7 @@ def write(tmp_path, paper):
 
 
 def test_the_paper_s_study(study):
-    cases = study.cases()
+    cases = study.cases
     grid = {case.nu for case in cases if case.variant.name == "d-both"}
     assert len(grid) == 241
     assert {case.variant.name for case in cases} == {*VARIANTS, "c-material-5x"}
@@ -48,17 +50,17 @@ def test_the_paper_s_study(study):
 
 def test_smoke_is_the_same_study_with_fewer_frequencies(root, study):
     smoke = load_study(root / paths.SMOKE)
-    assert smoke.parameters == study.parameters
+    assert smoke.parameters == study.pair
     assert smoke.reasons == study.reasons
     assert smoke.study.variants == study.study.variants
-    assert 0 < len(smoke.cases()) < len(study.cases()) / 10
+    assert 0 < len(smoke.cases()) < len(study.cases) / 10
 
 
 def test_a_time_course_off_the_grid_is_a_case(paper):
     study = load_study(paper, ["study.time_courses={b-both: [0.6051]}"])
-    [case] = [case for case in study.cases() if case.time_course]
+    [case] = [case for case in study.cases if case.time_course]
     assert (case.variant.name, case.nu) == ("b-both", 0.6051)
-    assert sum(c.nu == case.nu for c in study.cases()) == 1
+    assert sum(c.nu == case.nu for c in study.cases) == 1
 
 
 def test_adding_frequencies_keeps_the_files_that_exist(paper):
@@ -102,8 +104,8 @@ def test_a_grid_holds_the_decimals_that_one_would_write(paper, start, step, coun
 
 def test_overrides_are_typed_like_the_file(paper):
     study = load_study(paper, ["assumed.backlash=55 um", "run.revolutions=9", "title=no"])
-    assert study.assumed.backlash == 0.055
-    assert study.run.revolutions == 9
+    assert study.backlash == 0.055
+    assert study.revolutions == 9
     assert study.title == "no"
     assert study.reasons["backlash"] == "set on the command line"
 
@@ -112,14 +114,14 @@ def test_base_is_inherited_key_by_key(write):
     write("base: paper.yaml\nassumed: {backlash: 30 um}\nstudy: {strong_damping: null}", "a.yaml")
     file = write("base: a.yaml\nassumed: {module: 2 mm}\nstudy: {time_courses: {c-material-5x: }}")
     study = load_study(file)
-    assert (study.assumed.backlash, study.assumed.module) == (0.03, 2.0)
+    assert (study.backlash, study.module) == (0.03, 2.0)
     assert study.study.strong_damping is None
 
 
 def test_a_dumped_study_is_the_same_study(write, study):
     """What a configuration means survives being written in other units and another order."""
     data = {
-        **study.parameters.texts(),
+        **study.pair.texts(),
         "title": study.title,
         "reasons": study.reasons,
         "study": study.study.model_dump(mode="json", exclude_none=True),

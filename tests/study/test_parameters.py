@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 from gearmesh.errors import InputError
 from gearmesh.model.variants import VARIANTS, variant
-from gearmesh.study.parameters import DERIVATIONS, KG_PER_N_S2_MM, KINDS, Parameters, rows
+from gearmesh.study.pair import DERIVATIONS, KG_PER_N_S2_MM, KINDS, Parameters, rows
 
 NU_OF_THE_TEXT = 0.66
 
@@ -22,14 +22,14 @@ def test_p1_stiffnesses(parameters):
 def test_p2_damping_ratio_is_the_printed_one_only_with_the_mean_stiffness(parameters):
     assert f"{parameters.damping_ratio:.5f}" == "0.06168"
     assert f"{parameters.damping_ratio:.3f}" == "0.062"
-    mass = parameters.printed.reduced_mass / KG_PER_N_S2_MM
-    others = (parameters.printed.mesh_stiffness_max, parameters.stiffness_min)
-    ratios = [parameters.printed.damping / (2 * math.sqrt(c * mass)) for c in others]
+    mass = parameters.reduced_mass / KG_PER_N_S2_MM
+    others = (parameters.mesh_stiffness_max, parameters.stiffness_min)
+    ratios = [parameters.damping / (2 * math.sqrt(c * mass)) for c in others]
     assert [f"{ratio:.3f}" for ratio in ratios] == ["0.056", "0.073"]
 
 
 def test_p2_five_times_the_damping(parameters):
-    assert f"{5 * parameters.printed.damping:.4f}" == "19.7685"
+    assert f"{5 * parameters.damping:.4f}" == "19.7685"
     assert f"{5 * parameters.damping_ratio:.4f}" == "0.3084"
     assert f"{5 * parameters.damping_ratio:.2f}" == "0.31"
 
@@ -50,14 +50,14 @@ def test_p5_resonance_at_the_least_stiffness(parameters):
 
 def test_p6_pressure_angle_gives_the_printed_contact_ratio(parameters):
     """A pair of equal standard wheels, whose addendum is one module."""
-    angle, teeth = parameters.derived.pressure_angle, parameters.printed.teeth
+    angle, teeth = parameters.pressure_angle, parameters.teeth
     pitch_radius, tip_radius = teeth / 2, teeth / 2 + 1  # in modules
     base_radius = pitch_radius * math.cos(angle)
     path = 2 * (math.sqrt(tip_radius**2 - base_radius**2) - pitch_radius * math.sin(angle))
     contact_ratio = path / (math.pi * math.cos(angle))
     assert f"{contact_ratio:.4f}" == "1.5691"
-    assert f"{contact_ratio:.3f}" == f"{parameters.printed.contact_ratio:.3f}"
-    assert f"{parameters.base_radius / parameters.assumed.module:.4f}" == "9.8668"
+    assert f"{contact_ratio:.3f}" == f"{parameters.contact_ratio:.3f}"
+    assert f"{parameters.base_radius / parameters.module:.4f}" == "9.8668"
 
 
 def test_the_misprinted_mass_unit_contradicts_the_printed_damping(parameters):

@@ -10,7 +10,7 @@ import pytest
 from project import Project, end, wait_for
 
 from gearmesh.data import batches
-from gearmesh.study.configuration import load_study
+from gearmesh.study.loading import load_study
 
 ATLAS = """\
 base: atlas.yaml
@@ -49,7 +49,7 @@ def test_a_killed_atlas_keeps_its_batches_and_ends_with_the_same_bytes(atlas, tm
     kept = {path for path, written in finished(atlas).items() if before.get(path) == written}
     assert len(kept) >= len(before) - 2  # two may have been under way
     study = load_study(atlas.path(atlas.config))
-    parts = batches.partition(study.cases(), study.study.cases_per_job)
+    parts = batches.partition(study.cases, study.study.cases_per_job)
     computed = sum(len(part.cases) for part in parts if f"{part.name}.nc" not in names(kept))
     assert re.search(rf"cases: {computed} computed", again.stdout), again.stdout
 
@@ -63,7 +63,7 @@ import resource, sys
 from pathlib import Path
 import numpy as np
 from gearmesh.data import batches, casefile, datasets
-from gearmesh.study.configuration import load_study
+from gearmesh.study.loading import load_study
 from gearmesh.solvers.response import Response
 
 folder, count = Path(sys.argv[1]), int(sys.argv[2])
@@ -71,15 +71,15 @@ grid = f"{{start: 0.6, stop: {0.6 + (count - 1) * 1e-4:.4f}, step: 1e-4}}"
 study = load_study("config/paper.yaml", [
     f"study.nu={grid}", "study.variants=[b-material, b-lubricant, c-material, c-lubricant]",
     "study.strong_damping=", "study.time_courses={}"])
-cases = study.cases()
+cases = study.cases
 # Only sizes matter here: sixty extrema a case, as light bodies have them.
 many = np.linspace(0.0, 1.0, 60)
 response = Response("ok", 9.5, many, many, np.ones(60, np.int8))
-row = casefile.record(response, study.parameters)
+row = casefile.record(response, study.pair)
 files = []
 for batch in batches.partition(cases, 600):
     files.append(folder / f"{batch.name}.nc")
-    stated = batches.attributes(study.parameters, batch)
+    stated = batches.attributes(study.pair, batch)
     batches.write_batch(files[-1], stated, batch, [row] * len(batch.cases))
 datasets.write_datasets(study, files, folder / "resonance.nc", folder / "bifurcation.nc")
 print(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss // 1024)

@@ -27,7 +27,7 @@ for name, stated in DESIGNS.designs.items():
             mem_mb=1500,
             runtime=30,
         params:
-            recipe=left_alone(stated, PLAN.study.parameters),
+            recipe=left_alone(stated, PLAN.study.pair),
             versions=str(provenance.versions()),
             settings=str(layout.SETTINGS),
             stated=DESIGNS.sampling(name),

@@ -19,7 +19,7 @@ rule identified_figures:
     # As fig1.
     priority: 2
     params:
-        shown=str(stated(PLAN.study.parameters)),
+        shown=str(stated(PLAN.study.pair)),
     shell:
         'python workflow/scripts/draw_identified.py "$STUDY" 2>&1 | tee {log}'
 

@@ -5,7 +5,7 @@ from pathlib import Path
 
 from gearmesh.pipeline.job import job
 from gearmesh.report.page import write_report
-from gearmesh.study.configuration import load_study
+from gearmesh.study.loading import load_study
 
 
 def main() -> None:

@@ -4,10 +4,10 @@ import argparse
 from pathlib import Path
 
 from gearmesh.data import paths
-from gearmesh.paper.claims import Evidence, load_ledger
-from gearmesh.paper.claims.checking import check_figure
 from gearmesh.pipeline.job import job
-from gearmesh.study.configuration import load_study
+from gearmesh.reproduction.claims import Evidence, load_ledger
+from gearmesh.reproduction.claims.checking import check_figure
+from gearmesh.study.loading import load_study
 
 
 def main() -> None:
@@ -16,7 +16,7 @@ def main() -> None:
     parser.add_argument("config", type=Path)
     options = parser.parse_args()
     with job("ledger"):
-        evidence = Evidence(parameters=load_study(options.config).parameters)
+        evidence = Evidence(pair=load_study(options.config).pair)
         check_figure("printed", evidence, load_ledger(paths.CLAIMS), paths.check_file("printed"))
 
 

@@ -15,7 +15,8 @@ from gearmesh.data.batches import Batch
 from gearmesh.data.casefile import Record
 from gearmesh.errors import InputError
 from gearmesh.pipeline.job import job, note, part, progress, tell
-from gearmesh.study.configuration import Case, Study, load_study
+from gearmesh.study.cases import Case, Study
+from gearmesh.study.loading import load_study
 
 CHUNK = 64
 """Cases that are integrated in one go: enough to fill the lanes, few enough to show progress."""
@@ -26,7 +27,7 @@ TOLD_EVERY = 2.0
 
 def compute(study: Study, batch: Batch) -> None:
     """Bring the case files and the file of a batch up to date."""
-    parameters = study.parameters
+    parameters = study.pair
     attributes = batches.attributes(parameters, batch)
     output = paths.batch_file(batch.name)
     records = _kept(study, batch.cases)
@@ -57,7 +58,7 @@ def _kept(study: Study, cases: Sequence[Case]) -> dict[Case, Record]:
 
 def _reuse(study: Study, case: Case) -> Record | None:
     path = paths.case_file(case.variant.name, case.nu)
-    wanted = casefile.attributes(study.parameters, case)
+    wanted = casefile.attributes(study.pair, case)
     if not casefile.is_whole(path):
         return None
     try:
@@ -73,7 +74,7 @@ def _reuse(study: Study, case: Case) -> Record | None:
 
 def has_file(study: Study, case: Case) -> bool:
     """Tell whether a case has a file of its own; one with a time course always has."""
-    return study.study.case_files or case.time_course
+    return study.plan.case_files or case.time_course
 
 
 def _integrate(study: Study, cases: Sequence[Case]) -> list[Record]:
@@ -82,11 +83,11 @@ def _integrate(study: Study, cases: Sequence[Case]) -> list[Record]:
     with part("loading"):
         from gearmesh.solvers.simulation import simulate
 
-    parameters = study.parameters
+    parameters = study.pair
     problems = [parameters.problem(case.variant, case.nu) for case in cases]
-    samples = parameters.run.samples_per_period if cases[0].time_course else 0
+    samples = parameters.samples_per_period if cases[0].time_course else 0
     with part("integration"):
-        responses = simulate(problems, parameters.solver.tolerance, samples)
+        responses = simulate(problems, parameters.tolerance, samples)
     records = [casefile.record(response, parameters) for response in responses]
     with part("case files"):
         for case, record in zip(cases, records, strict=True):
@@ -119,7 +120,7 @@ def main() -> None:
     options = parser.parse_args()
     with job("cases"):
         study = load_study(options.config)
-        batch = batches.partition(study.cases(), study.study.cases_per_job)[options.batch]
+        batch = batches.partition(study.cases, 1400)[options.batch]
         compute(study, batch)
         tell(progress())
 

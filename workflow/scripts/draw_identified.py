@@ -7,9 +7,9 @@ from gearmesh.identification import layout, table
 from gearmesh.identification.design import stated
 from gearmesh.identification.figures import draw_regions, draw_sensitivity
 from gearmesh.identification.settings import load_settings
-from gearmesh.paper.figures import canvas
 from gearmesh.pipeline.job import job
-from gearmesh.study.configuration import load_study
+from gearmesh.reproduction.figures import canvas
+from gearmesh.study.loading import load_study
 
 
 def main() -> None:
@@ -20,7 +20,7 @@ def main() -> None:
     with job("drawings"):
         study, settings = load_study(options.config), load_settings(layout.SETTINGS)
         found = table.read()
-        regions = draw_regions(found["regions"], settings.ranges, stated(study.parameters))
+        regions = draw_regions(found["regions"], settings.ranges, stated(study.pair))
         canvas.save(regions, layout.REPORTED["regions"])
         canvas.save(draw_sensitivity(found["sensitivity"]), layout.REPORTED["sensitivity"])
 

@@ -9,7 +9,7 @@ from gearmesh.identification.design import unit_points
 from gearmesh.identification.settings import load_settings
 from gearmesh.identification.survey import compute
 from gearmesh.pipeline.job import job, note, tell
-from gearmesh.study.configuration import load_study
+from gearmesh.study.loading import load_study
 
 
 def main() -> None:
@@ -29,7 +29,7 @@ def main() -> None:
         places = unit_points(design)
         if design.around:
             places = boxes.read_box(layout.box_file(options.design)).fill(places)
-        study = load_study(options.config).parameters
+        study = load_study(options.config).pair
         found = compute(settings, study, options.design, options.index, places)
         store.write(options.output, found, f"claims on samples of the design {options.design}")
         note({"identified": found.sizes["sample"]})

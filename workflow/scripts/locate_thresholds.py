@@ -6,9 +6,9 @@ from pathlib import Path
 
 from gearmesh.data import paths
 from gearmesh.data.writing import write_text
-from gearmesh.paper.thresholds import locate
 from gearmesh.pipeline.job import job
-from gearmesh.study.configuration import load_study
+from gearmesh.reproduction.thresholds import locate
+from gearmesh.study.loading import load_study
 
 
 def main() -> None:
@@ -18,8 +18,8 @@ def main() -> None:
     options = parser.parse_args()
     with job("thresholds"):
         study = load_study(options.config)
-        variants = [variant.name for variant, _ in study.study.frequencies()]
-        found = locate(study.parameters, variants)
+        variants = [variant.name for variant, _ in study.plan.frequencies()]
+        found = locate(study.pair, variants)
         write_text(paths.THRESHOLDS, json.dumps(found, indent=1, sort_keys=True) + "\n")
 
 

@@ -6,7 +6,7 @@ from pathlib import Path
 from gearmesh.data import paths
 from gearmesh.data.datasets import write_datasets
 from gearmesh.pipeline.job import job
-from gearmesh.study.configuration import load_study
+from gearmesh.study.loading import load_study
 
 
 def main() -> None:

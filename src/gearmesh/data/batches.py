@@ -17,8 +17,8 @@ import numpy as np
 from gearmesh.data import casefile
 from gearmesh.data.casefile import FIELDS, Field, Record
 from gearmesh.errors import InputError
-from gearmesh.study.configuration import Case
-from gearmesh.study.parameters import Parameters
+from gearmesh.study.cases import Case
+from gearmesh.study.pair import Pair
 
 STORED = tuple((field, field.relative or field.name) for field in FIELDS)
 """Fields and names of the variables of a batch file: lengths in static deflections only."""
@@ -86,7 +86,7 @@ def partition(cases: Sequence[Case], size: int) -> list[Batch]:
     return [Batch(i, tuple(cases[start:end])) for i, (start, end) in enumerate(pieces)]
 
 
-def attributes(parameters: Parameters, batch: Batch) -> dict[str, str | float]:
+def attributes(parameters: Pair, batch: Batch) -> dict[str, str | float]:
     """Return the global attributes of a batch file."""
     digests = "".join(casefile.case_digest(parameters, case) for case in batch.cases)
     return {

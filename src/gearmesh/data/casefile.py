@@ -21,8 +21,8 @@ import numpy as np
 from gearmesh.data import provenance, writing
 from gearmesh.errors import InputError
 from gearmesh.solvers.response import STATUSES, Response
-from gearmesh.study.configuration import Case
-from gearmesh.study.parameters import Parameters
+from gearmesh.study.cases import Case
+from gearmesh.study.pair import Pair
 
 REGIMES = {1: "normal_mesh", 0: "contact_loss", -1: "inverse_mesh"}
 EXTREMUM_KINDS = {1: "maximum", -1: "minimum"}
@@ -108,18 +108,18 @@ SAMPLE_FIELDS = (
 """The variables of a time course."""
 
 
-def record(response: Response, parameters: Parameters) -> Record:
+def record(response: Response, parameters: Pair) -> Record:
     """Convert a response into the units of a file.
 
     Parameters
     ----------
     response : Response
         Dimensionless, with or without samples.
-    parameters : Parameters
+    parameters : Pair
         They set the scales of length, time and force.
     """
     scales = {
-        "mm": parameters.assumed.static_deflection,
+        "mm": parameters.static_deflection,
         "s": 1.0 / parameters.natural_frequency,
         "N/mm": parameters.stiffness_mean,
         "N": parameters.static_force,
@@ -136,9 +136,9 @@ def record(response: Response, parameters: Parameters) -> Record:
     return columns
 
 
-def boundaries(parameters: Parameters) -> int:
+def boundaries(parameters: Pair) -> int:
     """Return the number of boundaries of mesh periods in a run."""
-    return parameters.run.revolutions * parameters.printed.teeth + 1
+    return parameters.revolutions * parameters.teeth + 1
 
 
 def _values(response: Response) -> Iterator[tuple[Field, object]]:
@@ -155,20 +155,20 @@ def _values(response: Response) -> Iterator[tuple[Field, object]]:
 
 
 @functools.lru_cache(maxsize=2**13)
-def case_digest(parameters: Parameters, case: Case) -> str:
+def case_digest(parameters: Pair, case: Case) -> str:
     """Return the SHA-256 of all that decides the numbers of a case.
 
     It is blind to parameters without effect on this case: a conservative run has the same digest
     whatever the damping.
     """
     scales = (
-        parameters.assumed.static_deflection,
+        parameters.static_deflection,
         parameters.natural_frequency,
         parameters.stiffness_mean,
     )
-    samples = parameters.run.samples_per_period if case.time_course else 0
+    samples = parameters.samples_per_period if case.time_course else 0
     problem = parameters.problem(case.variant, case.nu)
-    stated = repr((problem, scales, samples, parameters.solver.tolerance))
+    stated = repr((problem, scales, samples, parameters.tolerance))
     return hashlib.sha256(f"{stated} {_common_digest()}".encode()).hexdigest()
 
 
@@ -178,7 +178,7 @@ def _common_digest() -> str:
     return f"{layout} {provenance.physics_digest()} {provenance.versions()}"
 
 
-def attributes(parameters: Parameters, case: Case) -> dict[str, str | float]:
+def attributes(parameters: Pair, case: Case) -> dict[str, str | float]:
     """Return the global attributes of a case file: what it is, and how it was made."""
     return {
         "Conventions": "CF-1.11",
@@ -191,13 +191,13 @@ def attributes(parameters: Parameters, case: Case) -> dict[str, str | float]:
 
 
 @functools.lru_cache(maxsize=4)
-def common_attributes(parameters: Parameters) -> dict[str, str | float]:
+def common_attributes(parameters: Pair) -> dict[str, str | float]:
     """Return the attributes that all files of a study share."""
     return {
         "parameters": parameters.canonical(),
         "parameters_sha256": parameters.digest(),
         "solver": "adaptive Taylor series with located events",
-        "solver_tolerance": parameters.solver.tolerance,
+        "solver_tolerance": parameters.tolerance,
         **{f"{name}_version": number for name, number in provenance.versions().items()},
         "physics_sources_sha256": provenance.physics_digest(),
     }

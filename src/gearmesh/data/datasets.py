@@ -21,7 +21,7 @@ from gearmesh.data.batches import Content
 from gearmesh.data.casefile import FIELDS, Field
 from gearmesh.errors import InputError
 from gearmesh.model.variants import Variant
-from gearmesh.study.configuration import Study
+from gearmesh.study.cases import Study
 
 NOT_COMPUTED = -1
 """Status of a cell without a case, and what stands there for a count."""
@@ -68,11 +68,11 @@ def write_datasets(
     resonance, bifurcation : Path
         Files to write.
     """
-    plan = study.study.frequencies()
+    plan = study.plan.frequencies()
     nu = np.array(sorted({nu for _, nus in plan for nu in nus}))
     longest = max(int(batches.read_counts(file).max()) for file in batch_files)
     sizes = {"variant": len(plan), "nu": nu.size}
-    more = {"extremum": max(longest, 1), "boundary": casefile.boundaries(study.parameters)}
+    more = {"extremum": max(longest, 1), "boundary": casefile.boundaries(study.pair)}
     with (
         _created(resonance, study, "resonance", sizes) as scalars,
         _created(bifurcation, study, "bifurcation", sizes | more) as sequences,
@@ -88,7 +88,7 @@ def write_datasets(
             for field in FIELDS:
                 cells = _cells(field, content, block, longest)
                 file = sequences if field.dimension else scalars
-                _store(file, field, place, cells, study.assumed.static_deflection)
+                _store(file, field, place, cells, study.pair.static_deflection)
 
 
 @contextlib.contextmanager
@@ -98,7 +98,7 @@ def _created(
     stated = {
         "Conventions": "CF-1.11",
         "title": f"{study.title}: {title}",
-        **casefile.common_attributes(study.parameters),
+        **casefile.common_attributes(study.pair),
     }
     made_of = casefile.recipe(stated | sizes)
     with casefile.sealed(path, made_of) as file:

@@ -34,7 +34,7 @@ CHECKED = ("printed", *NOTEBOOK_NAMES)
 def nu_label(nu: float) -> str:
     """Write a frequency for a file name: 4 decimals, more only where this one needs them.
 
-    Frequencies have at most 10 decimals (`gearmesh.study.configuration.read_nu` sees to it), so
+    Frequencies have at most 10 decimals (`gearmesh.study.frequencies.read_nu` sees to it), so
     no two share a label, and a label stays the same whatever other frequencies there are.
     """
     whole, decimals = f"{nu:.10f}".split(".")

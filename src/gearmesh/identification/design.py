@@ -5,7 +5,7 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from gearmesh.identification.settings import KINDS, Design, Settings
-from gearmesh.study.parameters import Parameters
+from gearmesh.study.pair import Pair
 
 Sample = dict[str, float | str]
 """Factor -> value; all lengths in static deflections, masses in m_red, stiffnesses in C_s."""
@@ -21,50 +21,54 @@ NEUTRAL: Sample = {
 """Values that remove an effect: they hold where a design says nothing."""
 
 
-def stated(parameters: Parameters) -> Sample:
+def stated(pair: Pair) -> Sample:
     """Return the sample that a study states."""
-    assumed, y_st = parameters.assumed, parameters.assumed.static_deflection
+    y_st = pair.static_deflection
+    eccentricity_3, eccentricity_2 = pair.eccentricity
     return NEUTRAL | {
-        "backlash": assumed.backlash / y_st,
-        "damping_length": assumed.damping_length / y_st,
-        "body_mass": assumed.body_mass / parameters.printed.reduced_mass,
-        "bearing_stiffness": assumed.bearing_stiffness / parameters.stiffness_mean,
-        "bearing_damping_ratio": assumed.bearing_damping_ratio,
-        "friction_coefficient": assumed.friction_coefficient,
-        "initial_phase": assumed.initial_phase,
-        "eccentricity_3": assumed.eccentricity_3 / y_st,
-        "eccentricity_2": assumed.eccentricity_2 / y_st,
-        "eccentricity_angle": assumed.eccentricity_angle,
+        "backlash": pair.backlash / y_st,
+        "damping_length": pair.damping_length / y_st,
+        "body_mass": pair.body_mass / pair.reduced_mass,
+        "bearing_stiffness": pair.bearing_stiffness / pair.stiffness_mean,
+        "bearing_damping_ratio": pair.bearing_damping_ratio,
+        "friction_coefficient": pair.friction_coefficient,
+        "initial_phase": pair.initial_phase,
+        "eccentricity_3": eccentricity_3 / y_st,
+        "eccentricity_2": eccentricity_2 / y_st,
+        "eccentricity_angle": pair.eccentricity_angle,
     }
 
 
-def parameters_of(sample: Mapping[str, float | str], study: Parameters) -> Parameters:
+def pair_of(sample: Mapping[str, float | str], study: Pair) -> Pair:
     """Return the parameters of a study with the values of a sample in place of its own.
 
     The initial velocity and the kind of run are no parameters of a study; they are left out.
     """
-    y_st = study.assumed.static_deflection
+    y_st = study.static_deflection
     scales = {
         "backlash": y_st,
         "damping_length": y_st,
-        "body_mass": study.printed.reduced_mass,
+        "body_mass": study.reduced_mass,
         "bearing_stiffness": study.stiffness_mean,
         "bearing_damping_ratio": 1.0,
         "friction_coefficient": 1.0,
         "initial_phase": 1.0,
-        "eccentricity_3": y_st,
-        "eccentricity_2": y_st,
         "eccentricity_angle": 1.0,
     }
-    changes = {name: float(sample[name]) * scale for name, scale in scales.items()}
+    changes: dict[str, object] = {
+        name: float(sample[name]) * scale for name, scale in scales.items()
+    }
+    changes["eccentricity"] = tuple(
+        float(sample[f"eccentricity_{wheel}"]) * y_st for wheel in (3, 2)
+    )
     # No validation: the ranges of the settings are inside those of the model.
-    return study.model_copy(update={"assumed": study.assumed.model_copy(update=changes)})
+    return study.model_copy(update=changes)
 
 
-def left_alone(design: Design, study: Parameters) -> str:
+def left_alone(design: Design, study: Pair) -> str:
     """Return a digest of all parameters of a study that a design leaves alone."""
     sample = stated(study) | dict.fromkeys(design.vary, 0.0)
-    return parameters_of(sample, study).digest()
+    return pair_of(sample, study).digest()
 
 
 def unit_points(design: Design) -> np.ndarray:
@@ -83,9 +87,7 @@ def unit_points(design: Design) -> np.ndarray:
     return points
 
 
-def samples(
-    points: np.ndarray, design: Design, settings: Settings, study: Parameters
-) -> list[Sample]:
+def samples(points: np.ndarray, design: Design, settings: Settings, study: Pair) -> list[Sample]:
     """Turn points of the unit cube, one row each, into samples.
 
     What a point says nothing about has the value of the study, or the one that removes its effect.

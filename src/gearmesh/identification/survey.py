@@ -8,14 +8,14 @@ import xarray as xr
 
 from gearmesh.data import casefile
 from gearmesh.identification import store
-from gearmesh.identification.courses import SampledCourses, look
-from gearmesh.identification.design import Sample, parameters_of, samples
+from gearmesh.identification.curves import SampledCurve, scan_all
+from gearmesh.identification.design import Sample, pair_of, samples
 from gearmesh.identification.settings import Settings
-from gearmesh.paper.claims.checking import MEASURES
-from gearmesh.paper.claims.evidence import Evidence, NotInStudy
-from gearmesh.paper.claims.fig6 import LESS, MORE, NU_OF_THE_CROSSING
-from gearmesh.paper.thresholds import NONLINEAR, STROBED_AT, locate_on
-from gearmesh.study.parameters import Parameters
+from gearmesh.reproduction.claims.checking import MEASURES
+from gearmesh.reproduction.claims.evidence import Evidence, NotInStudy, NotLocated
+from gearmesh.reproduction.claims.fig6 import LESS, MORE, NU_OF_THE_CROSSING
+from gearmesh.reproduction.thresholds import NONLINEAR, STROBED_AT, locate_on
+from gearmesh.study.pair import Pair
 
 VARIANTS = (
     *(f"{letter}-lubricant" for letter in ("b", *NONLINEAR)),
@@ -45,7 +45,7 @@ def tested_claims() -> list[str]:
 
 
 def compute(
-    settings: Settings, study: Parameters, name: str, index: int, places: np.ndarray
+    settings: Settings, study: Pair, name: str, index: int, places: np.ndarray
 ) -> xr.Dataset:
     """Measure the claims on one batch of a design.
 
@@ -53,7 +53,7 @@ def compute(
     ----------
     settings : Settings
         They say what the design varies, and how it is cut into batches.
-    study : Parameters
+    study : Pair
         All parameters that the design leaves alone.
     name : str
         The design.
@@ -69,47 +69,47 @@ def compute(
     return store.dataset(name, design, part, drawn, list(measure(drawn, study)))
 
 
-def measure(drawn: Sequence[Sample], study: Parameters) -> Iterator[Measured]:
+def measure(drawn: Sequence[Sample], study: Pair) -> Iterator[Measured]:
     """Yield what the claims of the ledger measure on each sample.
 
     Parameters
     ----------
     drawn : sequence of Sample
         Values of the open parameters.
-    study : Parameters
+    study : Pair
         All other parameters.
     """
     for first in range(0, len(drawn), _GROUP):
         group = drawn[first : first + _GROUP]
-        courses = [{name: SampledCourses(s, study, name) for name in VARIANTS} for s in group]
-        look([c for of_sample in courses for c in of_sample.values()])
-        for sample, of_sample in zip(group, courses, strict=True):
-            yield measure_courses(of_sample, parameters_of(sample, study))
+        curves = [{name: SampledCurve(s, study, name) for name in VARIANTS} for s in group]
+        scan_all([c for of_sample in curves for c in of_sample.values()])
+        for sample, of_sample in zip(group, curves, strict=True):
+            yield measure_curves(of_sample, pair_of(sample, study))
 
 
-def measure_courses(courses: Mapping[str, SampledCourses], parameters: Parameters) -> Measured:
-    """Return what the claims measure on the courses of one sample."""
+def measure_curves(curves: Mapping[str, SampledCurve], pair: Pair) -> Measured:
+    """Return what the claims measure on the curves of one sample."""
     evidence = Evidence(
-        parameters=parameters,
-        thresholds=locate_on(courses, parameters),
-        time_courses=dict(_time_courses(courses, parameters)),
+        pair=pair,
+        thresholds=locate_on(curves, pair),
+        time_courses=dict(_time_courses(curves, pair)),
     )
     found: Measured = {}
     for claim in tested_claims():
         try:
             measured, _ = MEASURES[claim](evidence)
-        except (NotInStudy, ArithmeticError, ValueError):
+        except (NotInStudy, NotLocated, ArithmeticError, ValueError):
             # What the claim speaks of does not exist in this motion.
             continue
         found.update(_columns(claim, measured))
     return found
 
 
-def _time_courses(courses, parameters) -> Iterator[tuple[tuple[str, float], Mapping]]:
+def _time_courses(curves, pair) -> Iterator[tuple[tuple[str, float], Mapping]]:
     for name, nu in TIME_COURSES:
-        response = courses[name].time_course(nu)
+        response = curves[name].time_course(nu)
         if response.status == "ok":
-            record = casefile.record(response, parameters)
+            record = casefile.record(response, pair)
             yield (name, nu), {key: xr.Variable(("",) * a.ndim, a) for key, a in record.items()}
 
 

@@ -12,9 +12,10 @@ from gearmesh.data import batches, casefile, paths, provenance
 from gearmesh.data.batches import Batch
 from gearmesh.errors import InputError
 from gearmesh.identification import layout
-from gearmesh.paper.claims import Claim
 from gearmesh.pipeline.job import tell
-from gearmesh.study.configuration import Case, Study, load_study
+from gearmesh.reproduction.claims import Claim
+from gearmesh.study.cases import Case, Study
+from gearmesh.study.loading import load_study
 
 SCRIPTS = Path("workflow/scripts")
 _SETTINGS = ("study",)
@@ -49,37 +50,37 @@ class Plan:
     @cached_property
     def cases(self) -> tuple[Case, ...]:
         """All cases."""
-        return tuple(self.study.cases())
+        return tuple(self.study.cases)
 
     @cached_property
     def batches(self) -> list[Batch]:
         """The batches in which they are computed."""
-        return batches.partition(self.cases, self.study.study.cases_per_job)
+        return batches.partition(self.cases, 1400)
 
     @cached_property
     def recipe(self) -> str:
         """What all cases depend on besides variant and frequency: parameters and versions."""
-        return _digest((self.study.parameters.digest(), provenance.versions()))
+        return _digest((self.study.pair.digest(), provenance.versions()))
 
     @cached_property
     def grid(self) -> str:
         """What the datasets depend on besides the batches: their title and their axes."""
-        plan = [(variant.name, nus) for variant, nus in self.study.study.frequencies()]
+        plan = [(variant.name, nus) for variant, nus in self.study.plan.frequencies()]
         return _digest((self.study.title, plan))
 
     @cached_property
     def variants(self) -> str:
         """The names of all variants."""
-        return " ".join(variant.name for variant, _ in self.study.study.frequencies())
+        return " ".join(variant.name for variant, _ in self.study.plan.frequencies())
 
     @cached_property
     def stated(self) -> str:
         """All that the configuration states, reasons and title too: what the report depends on."""
-        return _digest(self.study.model_dump_json())
+        return _digest((self.study.pair.parameters, self.study.plan.model_dump_json()))
 
     def has_file(self, case: Case) -> bool:
         """Tell whether a case has a file of its own; one with a time course always has."""
-        return self.study.study.case_files or case.time_course
+        return self.study.plan.case_files or case.time_course
 
     def time_courses(self, variants: Sequence[str]) -> list[str]:
         """Return the batch files whose cases have time courses of some variants."""
@@ -137,7 +138,7 @@ class Plan:
 
     def _lacking(self, batch: Batch, files: Mapping[str, Case], only_tell: bool) -> list[str]:
         """Return the case files of a batch that are not there, or not as this study makes them."""
-        parameters = self.study.parameters
+        parameters = self.study.pair
         lacking, others = [], []
         for file, case in files.items():
             path = Path(file)
@@ -172,7 +173,7 @@ class Plan:
                 _drop(file, "without a record of its parameters", only_tell)
 
     def _is_current(self, batch: Batch) -> bool:
-        wanted = casefile.recipe(batches.attributes(self.study.parameters, batch))
+        wanted = casefile.recipe(batches.attributes(self.study.pair, batch))
         return casefile.is_whole(Path(self.batch_file(batch)), wanted)
 
 
@@ -230,11 +231,11 @@ def sources(*files: str) -> list[str]:
 def checked_by(figure: str, *files: str) -> list[str]:
     """Return files that check the claims of a figure, and what they import of it.
 
-    `gearmesh.paper.claims.checking` imports the checks of all figures; a figure depends on its
+    `gearmesh.reproduction.claims.checking` imports the checks of all figures; a figure depends on its
     own, and on what these import.
     """
-    checks = {provenance.module(f"paper/claims/{name}") for name in paths.CHECKED}
-    own = provenance.module(f"paper/claims/{figure}")
+    checks = {provenance.module(f"reproduction/claims/{name}") for name in paths.CHECKED}
+    own = provenance.module(f"reproduction/claims/{figure}")
     others = {_relative(check) for check in checks - {own, *provenance.sources(own)}}
     return [file for file in sources(*files) if file not in others]
 

@@ -20,13 +20,13 @@ from gearmesh.data.casefile import STATUSES
 from gearmesh.data.datasets import open_dataset
 from gearmesh.data.writing import write_text
 from gearmesh.identification import layout, table
-from gearmesh.identification.presentation import section
 from gearmesh.identification.settings import load_settings
-from gearmesh.paper.claims import Entry, load_ledger, read_entries, verdict
-from gearmesh.paper.equations import EQUATIONS
+from gearmesh.report.identified import section
 from gearmesh.report.presentation import environment, number
-from gearmesh.study.configuration import Study
-from gearmesh.study.parameters import DERIVATIONS, rows
+from gearmesh.reproduction.claims import Entry, load_ledger, read_entries, verdict
+from gearmesh.reproduction.equations import EQUATIONS
+from gearmesh.study.cases import Study
+from gearmesh.study.pair import DERIVED
 
 CAPTIONS = Path("workflow/report")
 """Where the captions stand: plain text, one file a figure."""
@@ -49,10 +49,12 @@ class Figure:
 class Parameter:
     """A row of the tables of parameters."""
 
+    name: str
     symbol: str
     description: str
     value: str
-    remark: str = ""
+    kind: str = ""
+    reason: str = ""
 
 
 def write_report(study: Study) -> None:
@@ -82,7 +84,7 @@ def _identified(study: Study) -> str:
         table.read(),
         load_ledger(paths.CLAIMS),
         load_settings(layout.SETTINGS),
-        study.parameters,
+        study.pair,
         {name: _relative(path) for name, path in layout.REPORTED.items()},
     )
 
@@ -119,9 +121,8 @@ def render(
             figures=[_figure(name, caption, entries) for name, caption in captions.items()],
             notebook_of=_notebook_of,
             equations=EQUATIONS,
-            printed=list(_given(study, "printed")),
-            derived=[*_given(study, "derived"), *_following(study)],
-            assumed=list(_given(study, "assumed")),
+            stated=list(_given(study)),
+            derived=list(_following(study)),
             identified=identified,
             computation=list(_computation(study, resonance)),
             sensitivity=list(_sensitivity(resonance)),
@@ -152,22 +153,24 @@ def _figure(name: str, caption: str, entries: Iterable[Entry]) -> Figure:
     )
 
 
-def _given(study: Study, section: str) -> Iterable[Parameter]:
-    """Yield the rows of the parameters that are given in a section."""
-    for row in rows(section):
-        value = _quantity(getattr(getattr(study, section), row.name), row.unit)
-        reason = study.reasons.get(row.name, "") if section == "assumed" else ""
-        yield Parameter(row.symbol, row.description, value, reason)
+def _given(study: Study) -> Iterable[Parameter]:
+    """Yield the rows of the parameters that the study states, or leaves at their defaults."""
+    for row in study.pair.parameters:
+        if row.value is not None:
+            value = _quantity(row.value, row.unit)
+            yield Parameter(row.name, row.symbol, row.description, value, row.kind, row.reason)
 
 
 def _following(study: Study) -> Iterable[Parameter]:
     """Yield the rows of the parameters that follow from the given ones."""
-    for derivation in DERIVATIONS:
-        value = _quantity(derivation.value(study.parameters), derivation.unit)
-        yield Parameter(derivation.symbol, derivation.formula, value)
+    for quantity in DERIVED:
+        value = _quantity(quantity.value(study.pair), quantity.unit)
+        yield Parameter(quantity.name, quantity.symbol, quantity.formula, value)
 
 
 def _quantity(value: object, unit: str) -> str:
+    if isinstance(value, tuple) and value and not isinstance(value[0], tuple):
+        return ", ".join(_quantity(item, unit) for item in dict.fromkeys(value))
     if isinstance(value, tuple):
         harmonics = (f"({number(c)}, {number(s)})" for c, s in value)
         return f"{', '.join(harmonics)} {unit}" if value else "none"
@@ -178,20 +181,18 @@ def _quantity(value: object, unit: str) -> str:
 
 def _computation(study: Study, resonance: xr.Dataset) -> Iterable[tuple[str, str]]:
     """Yield what was run, and with what."""
-    plan, run = study.study, study.run
-    cases = study.cases()
-    nu = plan.nu.all
-    periods = run.revolutions * study.printed.teeth
-    kept = run.kept_revolutions * study.printed.teeth
+    pair, cases, nu = study.pair, study.cases, study.nu
+    periods = pair.revolutions * pair.teeth
+    kept = pair.kept_revolutions * pair.teeth
     yield "Cases", f"{len(cases)}, of which {sum(c.time_course for c in cases)} with time courses"
     yield "Status", _statuses(resonance)
-    yield "Tuning", f"{len(nu)} values of ν_s from {number(nu[0])} to {number(nu[-1])}"
+    yield "Mesh frequency", f"{len(nu)} values of ν_s from {number(nu[0])} to {number(nu[-1])}"
     yield "Length", f"{periods} mesh periods from static equilibrium; the last {kept} are kept"
     yield "Method", "Taylor series of adaptive step; switches, contacts and extrema are located"
-    yield "Tolerance", f"{number(study.solver.tolerance)} in a step, relative to y_st and y_st Ω_s"
+    yield "Tolerance", f"{number(pair.tolerance)} in a step, relative to y_st and y_st Ω_s"
     versions = {"Python": platform.python_version(), **provenance.versions()}
     yield "Versions", ", ".join(f"{name} {version}" for name, version in versions.items())
-    yield "Parameters", f"SHA-256 {study.parameters.digest()}"
+    yield "Parameters", f"SHA-256 {study.pair.digest()}"
     yield "Physics sources", f"SHA-256 {provenance.physics_digest()}"
 
 

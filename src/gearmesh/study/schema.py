@@ -24,13 +24,21 @@ _EXPECTED = {
 
 
 def quantity(
-    unit: str, symbol: str, description: str, low: float, high: float, **options: Any
+    unit: str,
+    symbol: str,
+    description: str,
+    low: float,
+    high: float,
+    *,
+    of_wheels: bool = False,
+    **options: Any,
 ) -> Any:
     """Declare a quantity that is stored in `unit` and lies between `low` and `high`.
 
-    `options` are those of ``pydantic.Field``, such as a default.
+    `of_wheels` declares two values, for wheels 3 and 2; one value serves both. `options` are those
+    of ``pydantic.Field``, such as a default.
     """
-    extra = {"unit": unit, "symbol": symbol, "low": low, "high": high}
+    extra = {"unit": unit, "symbol": symbol, "low": low, "high": high, "of_wheels": of_wheels}
     return Field(description=description, json_schema_extra=extra, **options)
 
 
@@ -46,7 +54,17 @@ class Section(BaseModel):
         declared = field.json_schema_extra
         if declared is None or (value is None and not field.is_required()):
             return value
+        if declared["of_wheels"]:
+            return _read_of_wheels(value, declared)
         return _read(value, declared)
+
+
+def _read_of_wheels(value: object, declared: Mapping[str, Any]) -> object:
+    if not isinstance(value, list | tuple):
+        return (_read(value, declared),) * 2
+    if len(value) != 2:
+        raise ValueError(f"{len(value)} values; allowed is one, or two for wheels 3 and 2")
+    return _read(value, declared)
 
 
 def _read(value: object, declared: Mapping[str, Any]) -> object:

@@ -16,6 +16,7 @@ _FACTOR = rf"[A-Za-zµμ°%]+{_POWER}"
 _FACTORS = rf"{_FACTOR}(?:(?:\s*[*/·]\s*|\s+){_FACTOR})*"
 _UNIT = rf"{_FACTORS}(?:\s*/\s*\(\s*{_FACTORS}\s*\))?"
 _QUANTITY = re.compile(rf"\s*(?P<number>{_NUMBER})\s*(?P<unit>{_UNIT})?\s*")
+_MULTIPLE = re.compile(rf"\s*(?P<number>{_NUMBER})\s*(?P<scale>[A-Za-z]+_[A-Za-z]+)\s*")
 _LONGEST = 80  # characters: no quantity needs more, and the pattern above stays fast
 
 _NAMES = {
@@ -71,6 +72,26 @@ def parse(value: object, unit: str) -> float:
     return float(f"{number:.15g}") + 0.0  # no negative zero
 
 
+def scaled(value: object, scale: str, size: float, unit: str) -> object:
+    """Replace multiples of a scale, such as ``"8 y_st"``, by quantities in `unit`.
+
+    Parameters
+    ----------
+    value : object
+        A text, a (nested) list of texts, or anything else, which is returned as it is.
+    scale : str
+        Name of the scale.
+    size : float
+        Its size in `unit`.
+    """
+    if isinstance(value, list | tuple):
+        return [scaled(item, scale, size, unit) for item in value]
+    match = _MULTIPLE.fullmatch(value) if isinstance(value, str) else None
+    if match is None or match["scale"] != scale:
+        return value
+    return f"{float(match['number']) * size!r} {unit}"
+
+
 def wanted(unit: str) -> str:
     """Describe in words the quantities that `unit` measures, with an example."""
     name = _NAMES.get(unit, "a quantity")
@@ -79,6 +100,8 @@ def wanted(unit: str) -> str:
 
 def _split(text: str, unit: str) -> tuple[float, str | None]:
     """Take a text apart into its number and its unit (None if there is none)."""
+    if _MULTIPLE.fullmatch(text):
+        raise ValueError(f"no scale of this kind; wanted is {wanted(unit)}")
     match = _QUANTITY.fullmatch(text) if len(text) <= _LONGEST else None
     if match is None:
         raise ValueError(f"not a quantity; wanted is {wanted(unit)}")

@@ -1,0 +1,232 @@
+"""Locate what the paper states as numbers in ν_s: jumps, ends of loops, onsets, crossings.
+
+`locate` returns all of it for a pair. The searches cover the paper's range of ν_s whatever the
+grid of the study is. Lengths are in static deflections y_st.
+"""
+
+from collections.abc import Callable, Collection, Iterable, Mapping
+from dataclasses import asdict
+
+import numpy as np
+
+from gearmesh.dynamics import response_curves as curves
+from gearmesh.dynamics.response_curves import FailedRun, Jump, ResponseCurve
+from gearmesh.model.variants import variant
+from gearmesh.solvers.response import MAXIMUM, MINIMUM, Response
+from gearmesh.study.pair import Pair
+
+FIRST, LAST = 0.6, 1.2
+"""The paper's range of ν_s."""
+
+BETWEEN_JUMPS = 0.73
+"""Half-way between the jumps that the paper sees near 0.66 and near 0.8."""
+
+LAST_JUMP = 1.0
+"""The searches for jumps end here."""
+
+LOOPS_FROM = 0.5
+"""The searches for loops begin here: those of a more damped curve may end below `FIRST`."""
+
+STROBED_AT = (0.60, 1.05, 1.20)
+"""Mesh frequencies of Fig. 4."""
+
+NONLINEAR = ("c", "d", "h")
+"""Letters of the variants that Figs. 2 and 3 set beside the linear one."""
+
+Found = dict[str, Callable[[], object]]
+"""Observable -> the search for it."""
+
+
+def curve_of(pair: Pair, name: str) -> ResponseCurve:
+    """Return the response curve of a variant, such as ``c-lubricant``."""
+    chosen = variant(name)
+    return ResponseCurve(lambda nu: pair.problem(chosen, nu), pair.tolerance, name)
+
+
+def locate(pair: Pair, variants: Collection[str]) -> dict[str, dict[str, object]]:
+    """Locate every threshold that the variants allow.
+
+    Parameters
+    ----------
+    pair : Pair
+        The pair of the study.
+    variants : collection of str
+        Names of the variants of the study, ``c-material-5x`` among them where it is in.
+
+    Returns
+    -------
+    dict
+        Observable -> variant (or group of variants) -> value, ready for JSON. Frequencies are
+        ν_s, lengths in y_st. A threshold that does not exist is None; one whose variants are
+        missing is left out; one that depends on a run that failed is ``{"not_located": why}``.
+    """
+    return locate_on({name: curve_of(pair, name) for name in sorted(variants)}, pair)
+
+
+def locate_on(known: Mapping[str, ResponseCurve], pair: Pair) -> dict[str, dict[str, object]]:
+    """Locate every threshold that some curves, by the names of their variants, allow."""
+    found: dict[str, dict[str, object]] = {}
+
+    def note(observable: str, name: str, search: Callable[[], object]) -> None:
+        try:
+            value = _plain(search())
+        except FailedRun as error:
+            value = {"not_located": str(error)}
+        found.setdefault(observable, {})[name] = value
+
+    def note_all(name: str, searches: Found) -> None:
+        for observable, search in searches.items():
+            note(observable, name, search)
+
+    for letter in ("b", *NONLINEAR):
+        if (name := f"{letter}-lubricant") in known:
+            note_all(name, _of_lubricant(known[name], pair))
+    for name in (f"{letter}-{symbol}" for letter in NONLINEAR for symbol in ("material", "both")):
+        if name in known:
+            note("largest_step", name, _of(curves.largest_step, known[name], FIRST, LAST))
+    for name in ("b-material", "b-both"):
+        if name in known:
+            note("jumps", name, _of(curves.jumps, known[name], FIRST, LAST))
+    for letter in NONLINEAR:
+        both = [known.get(f"{letter}-{symbol}") for symbol in ("material", "both")]
+        if None not in both:
+            search = _of(curves.relative_difference, *both, FIRST, LAST)
+            note("material_or_both", letter, search)
+    group = [known.get(f"{letter}-lubricant") for letter in NONLINEAR]
+    if None not in group:
+        note("course_spread", "below", _of(curves.typical_spread, group, 0.66, 0.80))
+        note("course_spread", "above", _of(curves.typical_spread, group, 0.80, 1.10))
+    for name in ("c-material", "c-material-5x"):
+        if name in known:
+            note_all(name, _of_loops(known[name], pair))
+    both = [known.get(name) for name in ("c-material-5x", "c-material")]
+    if None not in both:
+        note("exceedance", "c-material-5x", _of(curves.exceedance, *both, FIRST, 0.8))
+    return found
+
+
+def _of(function: Callable[..., object], *arguments: object) -> Callable[[], object]:
+    return lambda: function(*arguments)
+
+
+def _plain(value: object) -> object:
+    """Write a value as JSON can hold it; what is not a number becomes None."""
+    if isinstance(value, Jump):
+        return asdict(value)
+    if isinstance(value, dict):
+        return {key: _plain(item) for key, item in value.items()}
+    if isinstance(value, list):
+        return [_plain(item) for item in value]
+    return None if isinstance(value, float) and not np.isfinite(value) else value
+
+
+def strobe_spread(pair: Pair) -> curves.Measure:
+    """Return the measure of how far the kept stroboscopic points lie apart: 0 if periodic."""
+    kept = pair.kept_revolutions * pair.teeth + 1
+
+    def spread(response: Response) -> float:
+        points = response.strobe_y[-kept:], response.strobe_v[-kept:]
+        return float(max(np.ptp(coordinate) for coordinate in points))
+
+    return spread
+
+
+def _of_lubricant(curve: ResponseCurve, pair: Pair) -> Found:
+    """Return the searches on a curve with damping in contact loss only (Figs. 2 to 4)."""
+    maxima, minima = (curve.of(curves.extremum_spread(kind)) for kind in (MAXIMUM, MINIMUM))
+    strobes = curve.of(strobe_spread(pair))
+
+    def rises() -> list[Jump]:
+        return curves.jumps(curve, FIRST, LAST_JUMP)
+
+    def first() -> float | None:
+        return next(iter(curves.great_rises(rises(), FIRST, BETWEEN_JUMPS)), None)
+
+    def second() -> float | None:
+        return next(reversed(curves.great_rises(rises(), BETWEEN_JUMPS, LAST_JUMP)), None)
+
+    def summit() -> tuple[float, float]:
+        return curves.peak(curve, second() or BETWEEN_JUMPS, LAST)
+
+    def split() -> float | None:
+        return curves.onset(curve, maxima, LAST_JUMP, LAST)
+
+    return {
+        "first_jump": first,
+        "second_jump": second,
+        "peak": lambda: dict(zip(("nu", "y_max"), summit(), strict=True)),
+        "lowest": lambda: _least(curve.of(curves.y_min)(curve.scan(FIRST, LAST))),
+        "onset_maxima": split,
+        "onset_minima": _of(curves.onset, curve, minima, LAST_JUMP, LAST),
+        "onset_strobes": _of(curves.onset, curve, strobes, LAST_JUMP, LAST),
+        "largest_rise": lambda: curves.largest_rise(curve, summit()[0], split() or LAST),
+        "loss_gained": lambda: {
+            name: place and loss_gained(curve, place)
+            for name, place in (("first", first()), ("second", second()))
+        },
+        "maxima_spread": lambda: _spread_below_and_above(curve, maxima),
+        "strobe_spread": lambda: dict(
+            zip(
+                (f"{nu:.2f}" for nu in STROBED_AT),
+                strobes(np.array(STROBED_AT)).tolist(),
+                strict=True,
+            )
+        ),
+    }
+
+
+def _spread_below_and_above(curve: ResponseCurve, spread: curves.Batch) -> dict[str, float]:
+    """Return the typical spread below 0.8, away from the jump near 0.66, and above 1.1."""
+    orderly = np.array([nu for nu in curve.scan(FIRST, 0.80) if abs(nu - 0.66) > 0.02])
+    return {
+        "below": float(np.median(spread(orderly))),
+        "above": float(np.median(spread(curve.scan(1.1, LAST)))),
+    }
+
+
+def loss_gained(curve: ResponseCurve, jump: float) -> float:
+    """Return by how much the share of contact loss is greater above a jump than below it."""
+    loss = curve.of(curves.contact_loss)
+    below = curve.scan(jump - 8 * curves.SCAN, jump - curves.SCAN)
+    above = curve.scan(jump + curves.SCAN, jump + 8 * curves.SCAN)
+    return float(np.median(loss(above)) - np.median(loss(below)))
+
+
+def _of_loops(curve: ResponseCurve, pair: Pair) -> Found:
+    """Return the searches for the loops of a curve (Figs. 3 and 5 to 7)."""
+    turning = curve.of(curves.turning_points)
+
+    def end() -> float | None:
+        return curves.loop_end(curve, LOOPS_FROM, LAST)
+
+    def before() -> float | None:
+        place = end()
+        return place and _least(turning(curve.scan(FIRST, place - curve.width)))
+
+    def beyond() -> float | None:
+        place = end()
+        return place and -_least(-turning(curve.scan(place + curve.width, LAST)))
+
+    def closing() -> float | None:
+        place = end()
+        return place and loop_place(curve, place, pair.initial_phase)
+
+    return {
+        "loop_end": end,
+        "loop_place": closing,
+        "turning_points_before": before,
+        "turning_points_beyond": beyond,
+    }
+
+
+def loop_place(curve: ResponseCurve, end: float, initial_phase: float) -> float:
+    """Return the phase of the mesh period at which the last loop, just below its end, closes."""
+    response = curve.at([end - curve.width])[0]
+    closest = int(np.argmin(np.abs(np.diff(response.extremum_y))))
+    time = response.extremum_time[closest : closest + 2].mean()
+    return float((time / response.period + initial_phase) % 1.0)
+
+
+def _least(values: Iterable[float]) -> float:
+    """Return the least value, infinity where there is none."""
+    return float(np.min(np.asarray(values), initial=np.inf))

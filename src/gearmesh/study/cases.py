@@ -1,0 +1,185 @@
+"""A study: a pair, its variants and mesh frequencies, and the cases that follow from them."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from functools import cached_property
+from pathlib import Path
+from typing import Annotated, Literal, Self
+
+import numpy as np
+from pydantic import BeforeValidator, Field, field_validator, model_validator
+
+from gearmesh.model.variants import VARIANTS, Variant, variant
+from gearmesh.study.frequencies import MAX_CASES, Frequencies, Nu
+from gearmesh.study.pair import Pair
+from gearmesh.study.schema import Section, nearest, quantity
+
+
+def _read_variant(value: object) -> str:
+    if not isinstance(value, str) or value not in VARIANTS:
+        hint = nearest(str(value), VARIANTS) or f"; allowed are {', '.join(VARIANTS)}"
+        raise ValueError(f"unknown variant{hint}")
+    return value
+
+
+VariantName = Annotated[str, BeforeValidator(_read_variant)]
+
+
+class StrongDamping(Section):
+    """One variant again with its damping multiplied."""
+
+    variant: VariantName = Field(description="the variant")
+    factor: float = quantity("1", "k'/k", "factor on the damping", 1e-3, 1e3)
+    nu: Frequencies = Field(description="its frequencies")
+
+    @model_validator(mode="after")
+    def _is_another_variant(self) -> Self:
+        if self.strong_variant.name in VARIANTS:
+            raise ValueError(f"factor: found {self.factor:g}; allowed is any other than 1")
+        if self.strong_variant.powers_label == "":
+            raise ValueError(f"variant: found {self.variant}; allowed is a variant with damping")
+        return self
+
+    @property
+    def strong_variant(self) -> Variant:
+        """The variant with its factor."""
+        return replace(variant(self.variant), factor=self.factor)
+
+
+class Plan(Section):
+    """Which cases are computed, and what is made of them."""
+
+    title: str = Field(description="one line", min_length=1, max_length=200)
+    claims: str | None = Field(
+        None, description="ledger of claims that the study is checked against, beside this file"
+    )
+    nu: Frequencies = Field(description="the mesh frequencies ν_s of all variants")
+    variants: tuple[VariantName, ...] = Field(description="names of Tab. 1, or all")
+    direction: Literal["up", "down"] | None = Field(
+        None, description="whether each run goes on from the run at the neighbouring frequency"
+    )
+    strong_damping: StrongDamping | None = Field(None, description="a more damped variant")
+    time_courses: dict[str, tuple[Nu, ...]] = Field(
+        default_factory=dict, description="frequencies with a time course, for each variant"
+    )
+    case_files: bool = Field(
+        True, description="whether cases without a time course have files of their own too"
+    )
+
+    @field_validator("variants", mode="before")
+    @classmethod
+    def _all_variants(cls, value: object) -> object:
+        if value == "all":
+            return tuple(VARIANTS)
+        if isinstance(value, str):
+            raise ValueError("allowed is a list of variants, or all")
+        return value
+
+    @model_validator(mode="after")
+    def _is_consistent(self) -> Self:
+        if not self.variants:
+            raise ValueError("variants: found none; allowed are names of Tab. 1, or all")
+        for name in self.variants:
+            if self.variants.count(name) > 1:
+                raise ValueError(f"variants: found {name} twice; allowed is once")
+        count = sum(len(nus) for _, nus in self.frequencies())
+        if count > MAX_CASES:
+            raise ValueError(f"nu: makes {count} cases; allowed are at most {MAX_CASES}")
+        spans = self.spans()
+        for name, nus in self.time_courses.items():
+            if name not in spans:
+                hint = nearest(name, spans) or f"; allowed are {', '.join(spans)}"
+                raise ValueError(f"time_courses.{name}: this variant is not computed{hint}")
+            low, high = spans[name]
+            for nu in nus:
+                if nus.count(nu) > 1:
+                    raise ValueError(f"time_courses.{name}: found {nu:g} twice; allowed is once")
+                if not low <= nu <= high:
+                    raise ValueError(
+                        f"time_courses.{name}: found {nu:g}; allowed is {low:g} to {high:g}"
+                    )
+        return self
+
+    def frequencies(self) -> list[tuple[Variant, tuple[float, ...]]]:
+        """Return the variants, each with its frequencies; time courses are not included."""
+        pairs = [(variant(name), self.nu.all) for name in self.variants]
+        if self.strong_damping is not None:
+            pairs.append((self.strong_damping.strong_variant, self.strong_damping.nu.all))
+        return pairs
+
+    def spans(self) -> dict[str, tuple[float, float]]:
+        """Return the lowest and the highest frequency of each variant, by its name."""
+        return {variant.name: (nus[0], nus[-1]) for variant, nus in self.frequencies()}
+
+
+@dataclass(frozen=True, slots=True)
+class Case:
+    """One run of a study."""
+
+    variant: Variant
+    nu: float
+    time_course: bool = False
+
+
+@dataclass(frozen=True)
+class Study:
+    """A study as its file states it.
+
+    Attributes
+    ----------
+    name : str
+        Its name, which is that of its folder of results.
+    path : Path
+        The file.
+    pair : Pair
+        The gear pair, and the settings of its runs.
+    plan : Plan
+        All other keys of the file.
+    """
+
+    name: str
+    path: Path
+    pair: Pair
+    plan: Plan
+
+    @property
+    def title(self) -> str:
+        """Title of the study."""
+        return self.plan.title
+
+    @property
+    def claims(self) -> Path | None:
+        """The ledger of claims that the study is checked against, if there is one."""
+        return None if self.plan.claims is None else self.path.parent / self.plan.claims
+
+    @property
+    def nu(self) -> np.ndarray:
+        """Mesh frequencies ν_s of all variants, ascending, shape (n,)."""
+        return np.array(self.plan.nu.all)
+
+    @property
+    def variants(self) -> tuple[str, ...]:
+        """Names of all variants, the more damped one included."""
+        return tuple(variant.name for variant, _ in self.plan.frequencies())
+
+    @property
+    def time_courses(self) -> Mapping[str, tuple[float, ...]]:
+        """Frequencies with a time course, for each variant that has some."""
+        return self.plan.time_courses
+
+    @cached_property
+    def cases(self) -> tuple[Case, ...]:
+        """All cases, variant by variant, each with ascending frequencies.
+
+        A frequency that has a time course is a case of its variant also where it lies off the
+        grid.
+        """
+        cases = []
+        for chosen, nus in self.plan.frequencies():
+            courses = set(self.time_courses.get(chosen.name, ()))
+            cases += [Case(chosen, nu, nu in courses) for nu in sorted({*nus, *courses})]
+        return tuple(cases)
+
+    def has_file(self, case: Case) -> bool:
+        """Return whether a case has a file of its own; one with a time course always has."""
+        return self.plan.case_files or case.time_course

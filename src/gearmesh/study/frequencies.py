@@ -1,0 +1,79 @@
+"""The mesh frequencies ν_s of a study: a grid, single values, or both."""
+
+from decimal import Decimal
+from functools import cached_property
+from typing import Annotated, Self
+
+from pydantic import BeforeValidator, Field, model_validator
+
+from gearmesh.study import units
+from gearmesh.study.schema import Section, quantity
+
+NU_DECIMALS = 10
+"""Frequencies are decimal numbers of at most so many decimals."""
+
+NU_MIN, NU_MAX = 0.01, 10.0
+MAX_CASES = 200_000
+
+
+def read_nu(value: object) -> float:
+    """Read a frequency, rounded to `NU_DECIMALS`; raises ValueError with what is allowed."""
+    number = units.parse(value, "1")
+    if not NU_MIN <= number <= NU_MAX:
+        raise ValueError(f"out of range; allowed is {NU_MIN:g} to {NU_MAX:g}")
+    return float(_decimal(number))
+
+
+def _decimal(nu: float) -> Decimal:
+    return Decimal(repr(nu)).quantize(Decimal(1).scaleb(-NU_DECIMALS))
+
+
+Nu = Annotated[float, BeforeValidator(read_nu)]
+
+
+class Frequencies(Section):
+    """Frequencies ν_s: a grid, single values, or both."""
+
+    start: Nu | None = Field(None, description="first frequency of the grid")
+    stop: Nu | None = Field(None, description="last frequency of the grid, at the most")
+    step: float | None = quantity("1", "Δν", "step of the grid", 1e-9, 1.0, default=None)
+    values: tuple[Nu, ...] = Field((), description="further frequencies")
+
+    @model_validator(mode="after")
+    def _is_a_set_of_frequencies(self) -> Self:
+        ends = {"start": self.start, "stop": self.stop, "step": self.step}
+        missing = [name for name, value in ends.items() if value is None]
+        if len(missing) in (1, 2):
+            raise ValueError(f"{missing[0]}: missing; a grid has start, stop and step")
+        if missing and not self.values:
+            raise ValueError("values: missing; allowed are start, stop and step, values, or both")
+        if not missing and self.stop < self.start:
+            raise ValueError(
+                f"stop: found {self.stop:g}, below start; allowed is {self.start:g} to {NU_MAX:g}"
+            )
+        count = self._count() + len(self.values)
+        if count > MAX_CASES:
+            raise ValueError(f"step: makes {count} frequencies; allowed are at most {MAX_CASES}")
+        seen = set(self._grid())
+        for nu in self.values:
+            if nu in seen:
+                raise ValueError(f"values: found {nu:g} twice, or on the grid too; allowed is once")
+            seen.add(nu)
+        return self
+
+    def _count(self) -> int:
+        if self.step is None:
+            return 0
+        span = Decimal(repr(self.stop)) - Decimal(repr(self.start))
+        return int(span / Decimal(repr(self.step))) + 1
+
+    def _grid(self) -> list[float]:
+        if self.step is None:
+            return []
+        start, step = Decimal(repr(self.start)), Decimal(repr(self.step))
+        return [float(_decimal(float(start + i * step))) for i in range(self._count())]
+
+    @cached_property
+    def all(self) -> tuple[float, ...]:
+        """All frequencies, ascending."""
+        return tuple(sorted([*self._grid(), *self.values]))

@@ -1,0 +1,181 @@
+"""Read a study from YAML.
+
+`load_study` follows ``base:``, applies replaced parameters and checks everything. Each mistake
+becomes one line. Nothing in a configuration is evaluated.
+"""
+
+import re
+from collections.abc import Iterable, Mapping
+from pathlib import Path
+
+from gearmesh.errors import InputError
+from gearmesh.study import yamlfile
+from gearmesh.study.cases import Plan, Study
+from gearmesh.study.frequencies import read_nu
+from gearmesh.study.pair import DERIVED, Pair
+from gearmesh.study.provenance import Statement, read_statement
+from gearmesh.study.schema import nearest, shown, validate
+
+_MAX_BASES = 8
+_NAME = re.compile(r"[A-Za-z0-9_-][A-Za-z0-9._-]{0,63}")
+_OWN = ("name", "title", "claims")
+"""Keys that a file does not inherit from its base: they say what this very study is."""
+
+
+def load_study(path: str | Path, overrides: Iterable[str] = ()) -> Study:
+    """Read and check a study.
+
+    Parameters
+    ----------
+    path : str or Path
+        YAML file. ``base: FILE`` in it names one, relative to it, whose keys it inherits.
+    overrides : iterable of str
+        ``NAME=VALUE`` for parameters, as ``"backlash=40 um"``.
+
+    Raises
+    ------
+    InputError
+        With one line: file, key, what was found, what is allowed.
+    """
+    path = Path(path)
+    data, own = _with_bases(path, ())
+    name = _name(path, data.pop("name", path.stem))
+    _check_keys(path, data)
+    changed = {}
+    for text in overrides:
+        key, value = _override(text)
+        data[key] = value
+        changed[key] = f"--set {text}"
+    try:
+        statements = {
+            key: read_statement(key, value)
+            for key, value in data.items()
+            if key in Pair.model_fields
+        }
+    except InputError as error:
+        raise InputError(f"{path}: {error}") from None
+    for key in changed:
+        statements[key] = Statement(data[key], reason="set on the command line")
+    pair = Pair.from_statements(statements, str(path), changed)
+    plan = {key: value for key, value in data.items() if key not in Pair.model_fields}
+    return Study(name, path, pair, _read_plan({"title": name, **plan}, own, path))
+
+
+def _name(path: Path, name: object) -> str:
+    if not isinstance(name, str) or not _NAME.fullmatch(name):
+        raise InputError(
+            f"{path}: name: found {shown(name)}; allowed are letters, digits, '.', '_' and '-', "
+            "64 at most, not '.' first; without a name, the file's name counts"
+        )
+    return name
+
+
+def _check_keys(path: Path, data: Mapping[str, object]) -> None:
+    """Refuse keys that are neither a parameter nor a key of the plan."""
+    known = [*Pair.model_fields, *Plan.model_fields, "name", "base"]
+    for key in data:
+        if key not in known:
+            raise InputError(f"{path}: {key}: unknown key{_hint(key, known)}")
+
+
+def _hint(key: str, known: Iterable[str]) -> str:
+    """Suggest the nearest name, also for a key with a section before it."""
+    known = list(known)
+    last = key.rpartition(".")[2]
+    for computed in DERIVED:
+        if computed.name == last:
+            return f"; it is computed as {computed.formula}"
+    if last in known:
+        return f" (did you mean '{last}'?)"
+    return nearest(last, known) or "; 'gearmesh parameters' lists all parameters"
+
+
+def _read_plan(data: dict[str, object], own: Mapping[str, object], path: Path) -> Plan:
+    """Read all that is no parameter.
+
+    A file that states other variants or frequencies means these only: time courses and stronger
+    damping that it inherits for cases that it does not have are left out.
+    """
+    if "strong_damping" not in own and "variants" in own and _is_left_out(data):
+        data.pop("strong_damping", None)
+    courses = data.pop("time_courses", None)
+    plan = validate(Plan, data, str(path), {})
+    if courses is None:
+        return plan
+    if isinstance(courses, Mapping):
+        stated = own.get("time_courses")
+        stated = stated if isinstance(stated, Mapping) else {}
+        spans = plan.spans()
+        courses = {
+            name: nus if name in stated else _within(nus, spans[name])
+            for name, nus in courses.items()
+            if name in stated or name in spans
+        }
+    return validate(Plan, {**data, "time_courses": courses}, str(path), {})
+
+
+def _is_left_out(data: Mapping[str, object]) -> bool:
+    """Return whether the variant of the stronger damping is none of the variants."""
+    strong, variants = data.get("strong_damping"), data.get("variants")
+    if not isinstance(strong, Mapping) or not isinstance(variants, list):
+        return False
+    return strong.get("variant") not in variants
+
+
+def _within(nus: object, span: tuple[float, float]) -> object:
+    """Return the frequencies within a span; anything else as it is, for validation to refuse."""
+    try:
+        return [nu for nu in nus if span[0] <= read_nu(nu) <= span[1]]  # type: ignore[attr-defined]
+    except (TypeError, ValueError):
+        return nus
+
+
+def _with_bases(
+    path: Path, inheriting: tuple[Path, ...]
+) -> tuple[dict[str, object], dict[str, object]]:
+    """Read a file; return it merged over its bases, and alone."""
+    if path.resolve() in inheriting or len(inheriting) >= _MAX_BASES:
+        raise InputError(f"{path}: base: the files inherit in a circle, or more than {_MAX_BASES}")
+    own = yamlfile.read_mapping(path)
+    base = own.pop("base", None)
+    if base is None:
+        return dict(own), own
+    if not isinstance(base, str):
+        raise InputError(f"{path}: base: found {shown(base)}; allowed is the name of a file")
+    try:
+        inherited, _ = _with_bases(path.parent / base, (*inheriting, path.resolve()))
+    except InputError as error:
+        raise InputError(f"{path}: base: {error}" if not inheriting else str(error)) from None
+    inherited = {key: value for key, value in inherited.items() if key not in _OWN}
+    return _merge(inherited, own), own
+
+
+def _merge(base: Mapping[str, object], own: Mapping[str, object]) -> dict[str, object]:
+    """Lay `own` over `base`.
+
+    Mappings are merged key by key, parameters and all else are replaced, and an empty value
+    removes a key.
+    """
+    merged = dict(base)
+    for key, value in own.items():
+        inherited = merged.get(key)
+        if value is None:
+            merged.pop(key, None)
+        elif key in Pair.model_fields:
+            merged[key] = value
+        elif isinstance(value, Mapping) and isinstance(inherited, Mapping):
+            merged[key] = _merge(inherited, value)
+        else:
+            merged[key] = value
+    return merged
+
+
+def _override(text: str) -> tuple[str, object]:
+    """Read ``NAME=VALUE`` of a parameter."""
+    key, equals, value = text.partition("=")
+    key = key.strip()
+    if not equals or not key:
+        raise InputError(f"--set {text}: allowed is NAME=VALUE, as in backlash='40 um'")
+    if key not in Pair.model_fields:
+        raise InputError(f"--set {text}: {key}: no such parameter{_hint(key, Pair.model_fields)}")
+    return key, yamlfile.read_value(value, f"--set {text}")
