@@ -42,8 +42,9 @@ rules do, and they decide results: with other ones y_max of a run may change in 
    takes that value. They slide again as soon as it takes more.
 2. Driven sliding does not stick. Where A < 0 eq. (6) drives the sliding, and nothing can hold it.
    From z_3' = z_2' the flanks go where the bearings pull them.
-3. Double contact neither holds nor drives. There A = 0, because the forces of both pairs cancel.
-   From z_3' = z_2' the flanks go where the bearings pull them, and the second sign follows.
+3. Double contact neither holds nor drives, nor does contact loss. There A = 0; in double contact
+   because the forces of both pairs cancel. From z_3' = z_2' the flanks go where the bearings pull
+   them, and the second sign follows.
 4. From exact rest, where the bearings do not pull, the second sign is +1. This is how a run starts
    in double contact, where the sign acts on the moments alone.
 5. At the start of a run the first sign is that of the bracket, +1 if it is 0.
