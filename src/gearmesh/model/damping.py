@@ -1,11 +1,12 @@
 """The damping force of eq. (7)."""
 
 from collections.abc import Sequence
+from typing import Any, TypeVar
 
-from numpy.typing import ArrayLike
+Number = TypeVar("Number", bound=Any)
 
 
-def damping_force(velocity: ArrayLike, law: Sequence[float]) -> ArrayLike:
+def damping_force(velocity: Number, law: Sequence[float]) -> Number:
     """Return the damping force of eq. (7), k1 v + k2 abs(v) v + k3 v^3.
 
     Parameters

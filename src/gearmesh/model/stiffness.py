@@ -24,7 +24,7 @@ def switch_phases(contact_ratio: float) -> tuple[float, float]:
     return half, 1.0 - half
 
 
-def in_double_contact(phase: ArrayLike, contact_ratio: float) -> np.ndarray:
+def in_double_contact(phase: float | np.ndarray, contact_ratio: float) -> np.ndarray:
     """Return whether two pairs of teeth carry at `phase`, a float or an array."""
     return np.abs(phase - np.round(phase)) < 0.5 * duty(contact_ratio)
 
@@ -35,7 +35,7 @@ def mean(contact_ratio: float, maximum: float, minimum: float) -> float:
 
 
 def rectangular(
-    phase: ArrayLike, contact_ratio: float, maximum: float, minimum: float
+    phase: float | np.ndarray, contact_ratio: float, maximum: float, minimum: float
 ) -> np.ndarray:
     """Return the stiffness at `phase`, a float or an array: the sum of eq. (4) in closed form.
 

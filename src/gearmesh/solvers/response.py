@@ -7,6 +7,7 @@ tau_s = Omega_s t counted from the start of the run, forces in the static mesh f
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from typing import Any
 
 import numpy as np
 
@@ -147,19 +148,19 @@ class Response:
 class Companion:
     """What a companion run leaves: its summary (`MEASURED`) and its strobes."""
 
-    summary: Mapping[str, float]
+    summary: Mapping[str, Any]
     strobes: np.ndarray
 
 
 def assemble(
     problem: Problem,
-    summary: Mapping[str, float],
+    summary: Mapping[str, Any],
     strobes: np.ndarray,
     extrema: np.ndarray,
     final_state: State,
     companion: Companion | None,
     tolerance: float,
-    samples: Samples | None,
+    samples: Any,
     rotation_drift: float = np.nan,
 ) -> Response:
     """Return the response that a compiled solver has measured.
@@ -198,9 +199,9 @@ def assemble(
 def _measure(
     response: Response,
     problem: Problem,
-    summary: Mapping[str, float],
+    summary: Mapping[str, Any],
     extrema: np.ndarray,
-    samples: Samples | None,
+    samples: Any,
 ) -> None:
     """Write what is measured on the kept revolutions."""
     duration = problem.kept_periods * problem.period
@@ -219,7 +220,7 @@ def _measure(
 
 def _estimate(
     response: Response,
-    summary: Mapping[str, float],
+    summary: Mapping[str, Any],
     strobes: np.ndarray,
     companion: Companion,
     bound: float,

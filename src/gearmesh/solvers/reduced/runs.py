@@ -1,9 +1,10 @@
 """Runs of the reduced system: what the compiled sweep takes of a problem, and what it returns."""
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from functools import cached_property, lru_cache
+from typing import Any
 
 import numpy as np
 from numba import njit
@@ -28,20 +29,20 @@ _ON_EDGE = 1e-9
 _MOST_TURNS = 100_000
 
 
-def _build_vector_sweep(key: str, cache: bool) -> Callable:
+def _build_vector_sweep(key: str, cache: bool) -> Callable[..., bool]:
     @njit(cache=cache, nogil=True)
-    def compiled(work, *arguments):
+    def compiled(work, *arguments):  # type: ignore[no-untyped-def]
         key  # noqa: B018 (see persistent)
-        return sweep(zeros8(), pointer_to(work), *arguments)
+        return sweep(zeros8(), pointer_to(work), *arguments)  # type: ignore[call-arg]
 
     return compiled
 
 
-def _build_scalar_sweep(key: str, cache: bool) -> Callable:
+def _build_scalar_sweep(key: str, cache: bool) -> Callable[..., bool]:
     @njit(cache=cache, nogil=True)
-    def compiled(work, *arguments):
+    def compiled(work, *arguments):  # type: ignore[no-untyped-def]
         key  # noqa: B018 (see persistent)
-        return sweep(zeros1(), pointer_to(work), *arguments)
+        return sweep(zeros1(), pointer_to(work), *arguments)  # type: ignore[call-arg]
 
     return compiled
 
@@ -78,7 +79,9 @@ def integrate(
     sampled = n if samples_per_period else 0
     samples = np.empty((sampled, SAMPLED, kept * samples_per_period + WIDEST))
     _sweep(runs, summaries, strobes, extrema, samples, samples_per_period)
-    measured = [dict(zip(SUMMARY.names, values, strict=True)) for values in summaries.tolist()]
+    measured = [
+        dict(zip(SUMMARY.names or (), values, strict=True)) for values in summaries.tolist()
+    ]
     responses = []
     for i, problem in enumerate(problems):
         found, boundaries = measured[i], problem.periods + 1
@@ -199,7 +202,7 @@ def _workspace() -> np.ndarray:
     return raw[first : first + N_ROWS * WIDEST]
 
 
-def _final_state(problem: Problem, summary: dict) -> State:
+def _final_state(problem: Problem, summary: Mapping[str, Any]) -> State:
     y, v, b, b_rate = summary["final"].tolist()
     branches = Branches(
         problem=problem if problem.initial_state is None else replace(problem, initial_state=None),
