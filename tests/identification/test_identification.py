@@ -26,8 +26,8 @@ from gearmesh.identification import (
 )
 from gearmesh.identification.settings import FACTORS, KINDS, Range, load_settings
 from gearmesh.identification.wording import Statement
-from gearmesh.paper.claims import Claim, holds, load_ledger
 from gearmesh.report import identified
+from gearmesh.reproduction.claims import Claim, holds, load_ledger
 
 SETTINGS = paths.CONFIG / "identify.yaml"
 

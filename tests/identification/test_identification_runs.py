@@ -5,14 +5,14 @@ from dataclasses import replace
 import numpy as np
 import pytest
 import yaml
+from gearmesh.identification.courses import ACCURACY, SampledCourses, look
 from project import Project
 
 from gearmesh.data import paths
 from gearmesh.identification import design, layout, store, survey, table
-from gearmesh.identification.courses import ACCURACY, SampledCourses, look
 from gearmesh.identification.settings import KINDS, load_settings
 from gearmesh.model.damping import variant
-from gearmesh.paper import thresholds
+from gearmesh.reproduction import thresholds
 from gearmesh.solvers.simulation import simulate
 
 SETTINGS = paths.CONFIG / "identify.yaml"

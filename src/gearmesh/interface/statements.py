@@ -19,7 +19,7 @@ Start = tuple[object, object]
 
 def paper_file() -> AbstractContextManager[Path]:
     """Return the file of the paper's study, which the package carries, as a context."""
-    return as_file(files("gearmesh.paper") / "paper.yaml")
+    return as_file(files("gearmesh.reproduction") / "paper.yaml")
 
 
 def paper() -> Pair:
@@ -43,7 +43,10 @@ def read_variants(values: str | Variant | Iterable[str | Variant]) -> list[Varia
     """Return one variant or several."""
     if isinstance(values, str | Variant):
         values = [values]
-    return [read_variant(value) for value in values]
+    found = [read_variant(value) for value in values]
+    if not found:
+        raise InputError("variants: none given; allowed is one name or several")
+    return found
 
 
 def read_frequency(nu: float) -> float:
@@ -57,6 +60,8 @@ def read_frequency(nu: float) -> float:
 def read_frequencies(nu: float | Sequence[float] | np.ndarray) -> list[float]:
     """Return one mesh frequency or several, without repetition."""
     found = [read_frequency(float(value)) for value in np.atleast_1d(np.asarray(nu, float))]
+    if not found:
+        raise InputError("nu: none given; allowed is one frequency or several")
     if len(set(found)) < len(found):
         raise InputError("nu: a frequency stands there twice; allowed is each once")
     return found

@@ -6,8 +6,8 @@ from typing import Any
 
 from gearmesh.identification.design import Sample, stated
 from gearmesh.identification.settings import FACTORS, Range, Settings
-from gearmesh.paper.claims import REPRODUCED, Claim
 from gearmesh.report.presentation import environment, number
+from gearmesh.reproduction.claims import REPRODUCED, Claim
 from gearmesh.study.pair import Pair
 
 ANY = "any"

@@ -11,9 +11,9 @@ from matplotlib.figure import Figure
 
 from gearmesh.data.writing import replacing
 from gearmesh.errors import InputError
-from gearmesh.paper.figures import palette
-from gearmesh.paper.figures.canvas import STYLE, WIDTH, V, shade_regions, styled
-from gearmesh.paper.figures.orbit import last_periods, scale, switches
+from gearmesh.reproduction.figures import palette
+from gearmesh.reproduction.figures.canvas import STYLE, WIDTH, V, shade_regions, styled
+from gearmesh.reproduction.figures.orbit import last_periods, scale, switches
 
 PERIODS_SHOWN = 5
 FORMATS = (".png", ".svg", ".pdf")

@@ -6,10 +6,10 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import MultipleLocator
 
-from gearmesh.paper.figures import palette
-from gearmesh.paper.figures.canvas import WIDTH, A, V, empty, styled
-from gearmesh.paper.figures.fig6 import LOOKS, STRONGER, damping_handles
-from gearmesh.paper.figures.orbit import closed, last_periods, switches
+from gearmesh.reproduction.figures import palette
+from gearmesh.reproduction.figures.canvas import WIDTH, A, V, empty, styled
+from gearmesh.reproduction.figures.fig6 import LOOKS, STRONGER, damping_handles
+from gearmesh.reproduction.figures.orbit import closed, last_periods, switches
 
 TUNING = 0.61
 """The paper does not print it; its text speaks of 0.61."""

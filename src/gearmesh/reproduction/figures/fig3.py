@@ -7,8 +7,8 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Rectangle
 
-from gearmesh.paper.figures import palette
-from gearmesh.paper.figures.canvas import (
+from gearmesh.reproduction.figures import palette
+from gearmesh.reproduction.figures.canvas import (
     NOT_IN_STUDY,
     WIDTH,
     micrometre_axis,
@@ -17,7 +17,7 @@ from gearmesh.paper.figures.canvas import (
     shade_regions,
     styled,
 )
-from gearmesh.paper.figures.orbit import present, scale
+from gearmesh.reproduction.figures.orbit import present, scale
 
 ROWS = (("lubricant", "•", palette.RED), ("material", "□", palette.BLUE))
 COLUMNS = (("c", "quadratic damping"), ("d", "cubic damping"), ("h", "both together"))

@@ -1,7 +1,7 @@
 """Fig. 3: bifurcation characteristics of c, d and h."""
 
-from gearmesh.paper.claims.evidence import Evidence
-from gearmesh.paper.claims.fig2 import LUBRICANT
+from gearmesh.reproduction.claims.evidence import Evidence
+from gearmesh.reproduction.claims.fig2 import LUBRICANT
 
 
 def bifurcation_onset(evidence: Evidence) -> tuple[dict[str, dict[str, float]], str]:

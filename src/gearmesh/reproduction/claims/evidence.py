@@ -28,7 +28,7 @@ class Evidence:
     pair : Pair
         The parameters of the study.
     thresholds : mapping
-        `results/datasets/thresholds.json`: what `gearmesh.paper.thresholds.locate` returns.
+        `results/datasets/thresholds.json`: what `gearmesh.reproduction.thresholds.locate` returns.
     time_courses : mapping
         (variant, nu) -> case file with its time course, opened with xarray (Figs. 4 and 7).
     """

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from gearmesh.data import paths
 from gearmesh.dynamics.refinement import refine_change, refine_peak, refine_step
 from gearmesh.model.damping import variant
-from gearmesh.paper import thresholds
+from gearmesh.reproduction import thresholds
 from gearmesh.solvers.response import MAXIMUM, MINIMUM, Response
 from gearmesh.solvers.simulation import simulate
 from gearmesh.study.loading import load_study

@@ -2,8 +2,8 @@
 
 import math
 
-from gearmesh.paper.claims.evidence import Evidence
-from gearmesh.paper.claims.fig5 import distance_to_switch
+from gearmesh.reproduction.claims.evidence import Evidence
+from gearmesh.reproduction.claims.fig5 import distance_to_switch
 
 LESS, MORE = "c-material", "c-material-5x"
 NU_OF_THE_CROSSING = 0.61

@@ -5,9 +5,9 @@ from pathlib import Path
 from typing import Any
 
 from gearmesh.errors import InputError
-from gearmesh.paper.claims import fig2, fig3, fig4, fig5, fig6, fig7, printed
-from gearmesh.paper.claims.evidence import Evidence, NotInStudy, NotLocated
-from gearmesh.paper.claims.ledger import (
+from gearmesh.reproduction.claims import fig2, fig3, fig4, fig5, fig6, fig7, printed
+from gearmesh.reproduction.claims.evidence import Evidence, NotInStudy, NotLocated
+from gearmesh.reproduction.claims.ledger import (
     DEVIATES,
     NOT_TESTABLE,
     REPRODUCED,

@@ -6,9 +6,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from gearmesh.model.stiffness import in_double_contact
-from gearmesh.paper.claims.evidence import Evidence
-from gearmesh.paper.claims.fig4 import by_quantity, corners
-from gearmesh.paper.claims.fig6 import LESS, MORE, NU_OF_THE_CROSSING
+from gearmesh.reproduction.claims.evidence import Evidence
+from gearmesh.reproduction.claims.fig4 import by_quantity, corners
+from gearmesh.reproduction.claims.fig6 import LESS, MORE, NU_OF_THE_CROSSING
 
 if TYPE_CHECKING:
     import xarray as xr

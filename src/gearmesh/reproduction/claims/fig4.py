@@ -5,9 +5,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from gearmesh.model.motion import NORMAL_MESH
-from gearmesh.paper.claims.evidence import Evidence
-from gearmesh.paper.claims.fig2 import LUBRICANT
-from gearmesh.paper.thresholds import STROBED_AT
+from gearmesh.reproduction.claims.evidence import Evidence
+from gearmesh.reproduction.claims.fig2 import LUBRICANT
+from gearmesh.reproduction.thresholds import STROBED_AT
 
 if TYPE_CHECKING:
     import xarray as xr

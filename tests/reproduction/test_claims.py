@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 from gearmesh.data import paths
 from gearmesh.errors import InputError
-from gearmesh.paper.claims import (
+from gearmesh.reproduction.claims import (
     DEVIATES,
     NOT_TESTABLE,
     REPRODUCED,
@@ -33,7 +33,7 @@ from gearmesh.paper.claims import (
     verdict,
     write_entries,
 )
-from gearmesh.paper.claims.checking import check_figure
+from gearmesh.reproduction.claims.checking import check_figure
 from gearmesh.study.loading import load_study
 
 FIGURES = ("printed", *paths.NOTEBOOK_NAMES)

@@ -9,9 +9,16 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.ticker import MultipleLocator
 
-from gearmesh.paper.figures import palette
-from gearmesh.paper.figures.canvas import WIDTH, V, empty, region_handles, shade_regions, styled
-from gearmesh.paper.figures.orbit import last_periods, scale, switches
+from gearmesh.reproduction.figures import palette
+from gearmesh.reproduction.figures.canvas import (
+    WIDTH,
+    V,
+    empty,
+    region_handles,
+    shade_regions,
+    styled,
+)
+from gearmesh.reproduction.figures.orbit import last_periods, scale, switches
 
 TUNINGS = (0.60, 1.05, 1.20)
 SPANS = (21, 5)

@@ -8,9 +8,9 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from mpl_toolkits.mplot3d.axes3d import Axes3D
 
-from gearmesh.paper.figures import palette
-from gearmesh.paper.figures.canvas import WIDTH, V, empty, styled
-from gearmesh.paper.figures.orbit import closed, last_periods, switches
+from gearmesh.reproduction.figures import palette
+from gearmesh.reproduction.figures.canvas import WIDTH, V, empty, styled
+from gearmesh.reproduction.figures.orbit import closed, last_periods, switches
 
 SPACING = 0.02
 """Least distance in the tuning between two orbits, so that they can be told apart."""

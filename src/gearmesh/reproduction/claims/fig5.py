@@ -1,7 +1,7 @@
 """Fig. 5: phase portrait of c-□ over nu_s."""
 
 from gearmesh.model.stiffness import switch_phases
-from gearmesh.paper.claims.evidence import Evidence
+from gearmesh.reproduction.claims.evidence import Evidence
 
 
 def loops_vanish(evidence: Evidence) -> tuple[dict[str, float], str]:

@@ -11,9 +11,9 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 from matplotlib.ticker import FixedLocator, FuncFormatter
 
-from gearmesh.paper.figures import palette
+from gearmesh.reproduction.figures import palette
 
-STYLE = "gearmesh.paper.figures.gearmesh"
+STYLE = "gearmesh.reproduction.figures.gearmesh"
 WIDTH = 7.2
 """Width of a full page figure in inches."""
 

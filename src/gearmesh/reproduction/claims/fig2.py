@@ -1,8 +1,8 @@
 """Fig. 2: resonance characteristics of a to d and h."""
 
 from gearmesh.dynamics.response_curves import WIDTH
-from gearmesh.paper.claims.evidence import Evidence
-from gearmesh.paper.thresholds import NONLINEAR
+from gearmesh.reproduction.claims.evidence import Evidence
+from gearmesh.reproduction.thresholds import NONLINEAR
 
 LUBRICANT = [f"{letter}-lubricant" for letter in NONLINEAR]
 ALL_LUBRICANT = ["b-lubricant", *LUBRICANT]

@@ -5,8 +5,8 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import Circle, FancyArrowPatch, Polygon, Rectangle
 
-from gearmesh.paper.figures import palette
-from gearmesh.paper.figures.canvas import WIDTH, styled
+from gearmesh.reproduction.figures import palette
+from gearmesh.reproduction.figures.canvas import WIDTH, styled
 
 CENTRE_3, CENTRE_2 = np.array((-1.75, -1.0)), np.array((1.75, 1.0))
 """Centres of the wheels, in base radii; the wheels are drawn apart to make room for the mesh."""

@@ -13,7 +13,18 @@ from matplotlib.image import imread
 from gearmesh.data import paths
 from gearmesh.data.datasets import open_dataset
 from gearmesh.errors import InputError
-from gearmesh.paper.figures import canvas, fig1, fig2, fig3, fig4, fig5, fig6, fig7, orbit, palette
+from gearmesh.reproduction.figures import (
+    canvas,
+    fig1,
+    fig2,
+    fig3,
+    fig4,
+    fig5,
+    fig6,
+    fig7,
+    orbit,
+    palette,
+)
 
 
 @pytest.fixture(scope="module")

@@ -7,13 +7,13 @@ A notebook or a rule needs these calls::
     entries = checking.check_figure("fig2", evidence, ledger, paths.check_file("fig2"))
     print(verdict(collect(ledger, all_check_files, paths.LEDGER)))
 
-`gearmesh.paper.claims.ledger` holds claims, entries and the verdict; `printed` and `fig2` to
+`gearmesh.reproduction.claims.ledger` holds claims, entries and the verdict; `printed` and `fig2` to
 `fig7` hold what is measured for each claim, and `checking` puts them together. The package
 itself imports none of these: what only reads the ledger need not load the solver.
 """
 
-from gearmesh.paper.claims.evidence import Evidence, NotInStudy
-from gearmesh.paper.claims.ledger import (
+from gearmesh.reproduction.claims.evidence import Evidence, NotInStudy
+from gearmesh.reproduction.claims.ledger import (
     DEVIATES,
     NOT_TESTABLE,
     REPRODUCED,

@@ -9,10 +9,10 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.ticker import MultipleLocator
 
-from gearmesh.paper.figures import palette
-from gearmesh.paper.figures.canvas import WIDTH, V, empty, styled
-from gearmesh.paper.figures.fig5 import dress
-from gearmesh.paper.figures.orbit import closed, last_periods, scale, switches
+from gearmesh.reproduction.figures import palette
+from gearmesh.reproduction.figures.canvas import WIDTH, V, empty, styled
+from gearmesh.reproduction.figures.fig5 import dress
+from gearmesh.reproduction.figures.orbit import closed, last_periods, scale, switches
 
 RANGE = (0.6, 0.8)
 CROSSING = 0.61

@@ -5,8 +5,8 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from gearmesh.paper.figures import palette
-from gearmesh.paper.figures.canvas import (
+from gearmesh.reproduction.figures import palette
+from gearmesh.reproduction.figures.canvas import (
     NOT_IN_STUDY,
     WIDTH,
     course_handle,
@@ -17,7 +17,7 @@ from gearmesh.paper.figures.canvas import (
     shade_regions,
     styled,
 )
-from gearmesh.paper.figures.orbit import present, scale
+from gearmesh.reproduction.figures.orbit import present, scale
 
 PANELS = (
     ("a + b", "conservative, and linear damping", ("a-conservative",), "b"),

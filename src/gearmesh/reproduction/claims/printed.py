@@ -9,7 +9,7 @@ from scipy.optimize import brentq
 
 from gearmesh.model import stiffness
 from gearmesh.model.damping import variant
-from gearmesh.paper.claims.evidence import Evidence
+from gearmesh.reproduction.claims.evidence import Evidence
 from gearmesh.solvers.simulation import simulate
 from gearmesh.study.pair import Pair
 
