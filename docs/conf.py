@@ -36,6 +36,7 @@ nb_merge_streams = True
 
 # Reference: what the docstrings say.
 default_role = "code"  # `name` in a docstring is code
+rst_prolog = r".. |v| replace:: \|v\|"  # an absolute value, not a substitution
 autodoc_default_options = {
     "members": True,
     "show-inheritance": True,
