@@ -27,6 +27,8 @@ SHELL = ("", "sh", "bash", "console")
 SHOWN = ("text", "yaml")
 """Kinds that are only read: files, output, and code that belongs into a file."""
 
+PAPER = "results/paper"
+
 ELSEWHERE = {
     "make reproduce": "tests/workflow/test_workflow.py runs the same targets on a small study",
     "make test": "runs this test",
@@ -98,10 +100,16 @@ def needs_running(page: str) -> bool:
     )
 
 
-@pytest.mark.parametrize("page", filter(needs_running, PAGES))
-def test_what_a_page_prints_works_as_printed(page: str, tmp_path: Path) -> None:
+@pytest.mark.parametrize("page", [page for page in PAGES if needs_running(page)])
+def test_what_a_page_prints_works_as_printed(
+    page: str, tmp_path: Path, request: pytest.FixtureRequest
+) -> None:
     project = Project.create(tmp_path / "project", "config/paper.yaml")
     project.path(".venv").symlink_to(sys.prefix)
+    if any(block.kind == "python" and PAPER in block.code for block in blocks(page)):
+        smoke = request.getfixturevalue("smoke")  # the paper's study, only smaller
+        project.path(PAPER).parent.mkdir()
+        project.path(PAPER).symlink_to(smoke.path("results/smoke"))
     python = []
     for block in blocks(page):
         if block.kind == "yaml" and (name := re.match(r"# (\S+\.yaml)\n", block.code)):
