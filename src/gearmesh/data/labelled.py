@@ -39,12 +39,12 @@ def run_dataset(response: Response, pair: Pair, case: Case) -> xr.Dataset:
     for field in (*FIELDS, *SAMPLE_FIELDS):
         if field.name in columns:
             dimension = "time" if field.dimension == "sample" else field.dimension
-            for name, values, stated in _twins(field, columns):
-                dataset[name] = ((dimension,) if dimension else (), values, stated)
+            for name, values, described in _twins(field, columns):
+                dataset[name] = ((dimension,) if dimension else (), values, described)
     return dataset.set_coords("time") if "time" in dataset else dataset
 
 
-def final_state(dataset: xr.Dataset) -> tuple[float, ...]:
+def final_state(dataset: xr.Dataset) -> tuple[float, float, float, float]:
     """Return the state at the end of the run that a dataset holds.
 
     Raises
@@ -55,7 +55,8 @@ def final_state(dataset: xr.Dataset) -> tuple[float, ...]:
     state = json.loads(dataset.attrs.get(_FINAL_STATE, "null"))
     if state is None:
         raise InputError("start: the dataset holds no run that came to its end")
-    return tuple(state)
+    u, du, b, db = state
+    return u, du, b, db
 
 
 def _twins(field: Field, columns: Record) -> list[tuple[str, np.ndarray, dict[str, object]]]:
