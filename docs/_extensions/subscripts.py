@@ -10,7 +10,7 @@ from sphinx import addnodes
 from sphinx.application import Sphinx
 from sphinx.transforms import SphinxTransform
 
-SYMBOL = re.compile(r"(?<![\w.])([A-Za-zΑ-Ωα-ωℓ])_([A-Za-z]{1,4}\d?m?|\d)(?![\w(])")
+SYMBOL = re.compile(r"(?<![\w.])([A-Za-zΑ-Ωα-ωℓ])_([A-Za-z]{1,4}\d?m?|\dm?)(?![\w(])")
 CODE = (addnodes.desc_signature, nodes.FixedTextElement, nodes.literal, nodes.math, nodes.raw)
 
 
