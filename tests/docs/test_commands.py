@@ -32,16 +32,11 @@ PAPER = "results/paper"
 ELSEWHERE = {
     "make reproduce": "tests/workflow/test_workflow.py runs the same targets on a small study",
     "make test": "runs this test",
-    "make test-fast": "a part of make test",
     "make lint": ".ci/run runs it",
     "make docs": ".ci/run runs it",
-    "make bench": "tests/solvers/test_peers.py runs the peers",
-    "make verify": "minutes; tests/solvers/test_peers.py compares with heyoka",
-    "make identify": "tests/identification/test_identification_runs.py runs it on a small design",
-    ".venv/bin/pre-commit install": "changes the repository's hooks",
-    ".venv/bin/snakemake": "as make reproduce",
+    "make identify": "tests/identification/test_identification_runs.py runs a small design",
+    ".venv/bin/pre-commit install": "changes the hooks of the repository that it runs in",
     ".venv/bin/snakemake --profile profiles/slurm": "tests/workflow/test_slurm.py runs it",
-    ".venv/bin/snakemake --report report.html": "needs the results of make reproduce",
 }
 """Commands that do not run here, each with what runs it instead."""
 
