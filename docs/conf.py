@@ -33,9 +33,11 @@ nb_execution_in_temp = True
 nb_execution_raise_on_error = True
 nb_execution_timeout = 180
 nb_merge_streams = True
+nb_render_markdown_format = "myst"
 
 # Reference: what the docstrings say.
 default_role = "code"  # `name` in a docstring is code
+rst_prolog = r".. |v| replace:: \|v\|"  # an absolute value, not a substitution
 autodoc_default_options = {
     "members": True,
     "show-inheritance": True,

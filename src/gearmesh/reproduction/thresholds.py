@@ -10,6 +10,7 @@ from dataclasses import asdict
 import numpy as np
 
 from gearmesh.dynamics import response_curves as curves
+from gearmesh.dynamics.refinement import Batch
 from gearmesh.dynamics.response_curves import FailedRun, Jump, ResponseCurve
 from gearmesh.model.variants import variant
 from gearmesh.solvers.response import MAXIMUM, MINIMUM, Response
@@ -175,7 +176,7 @@ def _of_lubricant(curve: ResponseCurve, pair: Pair) -> Found:
     }
 
 
-def _spread_below_and_above(curve: ResponseCurve, spread: curves.Batch) -> dict[str, float]:
+def _spread_below_and_above(curve: ResponseCurve, spread: Batch) -> dict[str, float]:
     """Return the typical spread below 0.8, away from the jump near 0.66, and above 1.1."""
     orderly = np.array([nu for nu in curve.scan(FIRST, 0.80) if abs(nu - 0.66) > 0.02])
     return {

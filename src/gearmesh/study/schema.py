@@ -38,7 +38,8 @@ def quantity(
     `of_wheels` declares two values, for wheels 3 and 2; one value serves both. `options` are those
     of ``pydantic.Field``, such as a default.
     """
-    extra = {"unit": unit, "symbol": symbol, "low": low, "high": high, "of_wheels": of_wheels}
+    extra: dict[str, Any] = {"unit": unit, "symbol": symbol, "low": low, "high": high}
+    extra["of_wheels"] = of_wheels
     return Field(description=description, json_schema_extra=extra, **options)
 
 
@@ -50,9 +51,9 @@ class Section(BaseModel):
     @field_validator("*", mode="before")
     @classmethod
     def _read_quantity(cls, value: object, info: ValidationInfo) -> object:
-        field = cls.model_fields[info.field_name]
+        field = cls.model_fields[str(info.field_name)]
         declared = field.json_schema_extra
-        if declared is None or (value is None and not field.is_required()):
+        if not isinstance(declared, dict) or (value is None and not field.is_required()):
             return value
         if declared["of_wheels"]:
             return _read_of_wheels(value, declared)
@@ -159,7 +160,8 @@ def _slips(model: type[BaseModel], data: object, error: ValidationError) -> list
         loc = item["loc"]
         key = ".".join(str(part)[:_SHOWN] for part in loc)
         if item["type"] == "extra_forbidden":
-            choices = _model_at(model, loc[:-1]).model_fields
+            section = _model_at(model, loc[:-1])
+            choices = section.model_fields if section else {}
             hint = nearest(str(loc[-1]), choices) or f"; allowed are {', '.join(choices)}"
             unknown.append(_Slip(key, f"unknown key{hint}", key))
         elif item["type"] == "missing":
@@ -192,10 +194,10 @@ def _model_at(model: type[BaseModel], loc: Sequence[int | str]) -> type[BaseMode
 
 def _purpose(model: type[BaseModel], loc: Sequence[int | str]) -> str:
     section = _model_at(model, loc[:-1])
-    return f"; wanted is {section.model_fields[loc[-1]].description}" if section else ""
+    return f"; wanted is {section.model_fields[str(loc[-1])].description}" if section else ""
 
 
-def _at(data: object, loc: Sequence[int | str]) -> object:
+def _at(data: Any, loc: Sequence[int | str]) -> object:
     for part in loc:
         try:
             data = data[part]

@@ -7,6 +7,7 @@ configuration is data: nothing in it is evaluated.
 import math
 import re
 from functools import cache
+from typing import Any
 
 import pint
 
@@ -31,7 +32,7 @@ _NAMES = {
 
 
 @cache
-def registry() -> pint.UnitRegistry:
+def registry() -> "pint.UnitRegistry[float]":
     """Return the one registry of units (built on first use: that takes a moment)."""
     return pint.UnitRegistry()
 
@@ -126,6 +127,7 @@ def _convert(number: float, given: str, unit: str) -> float:
     try:
         source = units.parse_units(given.replace("°", "deg").replace("·", "*"))
         target = units.parse_units(unit)
+        factor: Any
         factor, root = units.get_base_units(source)
         target_factor, target_root = units.get_base_units(target)
     except pint.UndefinedUnitError:

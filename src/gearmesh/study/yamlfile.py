@@ -5,7 +5,9 @@ tags are refused, so that a file is as large as it looks and cannot run code.
 """
 
 import re
+from collections.abc import Hashable
 from pathlib import Path
+from typing import Any
 
 import yaml
 
@@ -15,17 +17,18 @@ _MAX_BYTES = 1_000_000
 _MAX_DEPTH = 12
 
 
-def _slip(problem: str, place: yaml.Event | yaml.Node) -> yaml.MarkedYAMLError:
+def _slip(problem: str, place: Any) -> yaml.MarkedYAMLError:
+    """Return an error at the place of an event or a node."""
     return yaml.MarkedYAMLError(problem=problem, problem_mark=place.start_mark)
 
 
 class _Loader(yaml.SafeLoader):
     """Safe loader with YAML 1.2 scalars, without aliases and with unique keys."""
 
-    yaml_implicit_resolvers: dict = {}  # noqa: RUF012 - PyYAML's own way; filled below
+    yaml_implicit_resolvers: dict[str, Any] = {}  # noqa: RUF012 - PyYAML's own way; filled below
     depth = 0
 
-    def compose_node(self, parent, index):
+    def compose_node(self, parent: yaml.Node | None, index: int) -> yaml.Node | None:
         event = self.peek_event()
         if isinstance(event, yaml.AliasEvent):
             raise _slip("aliases (*) are not supported", event)
@@ -38,7 +41,7 @@ class _Loader(yaml.SafeLoader):
         self.depth -= 1
         return node
 
-    def construct_mapping(self, node, deep=False):
+    def construct_mapping(self, node: yaml.MappingNode, deep: bool = False) -> dict[Hashable, Any]:
         seen = set()
         for key_node, _ in node.value:
             key = self.construct_object(key_node, deep=True)
