@@ -13,7 +13,7 @@ from snakemake.utils import min_version
 
 from gearmesh.pipeline import job, plan as pipeline
 from gearmesh.data import paths
-from gearmesh.paper.claims import load_ledger
+from gearmesh.reproduction.claims import load_ledger
 from gearmesh.errors import InputError
 from gearmesh.identification import layout
 from gearmesh.identification.settings import load_settings

@@ -1,31 +1,34 @@
 """How Sphinx builds this site; `make docs` runs it. Nothing here needs a network."""
 
 import sys
-from importlib.metadata import version as installed
 from pathlib import Path
+
+import gearmesh
 
 sys.path.insert(0, str(Path(__file__).parent / "_extensions"))
 
 project = "gearmesh"
 author = "the gearmesh authors"
 project_copyright = author
-version = release = installed("gearmesh")
+version = release = gearmesh.__version__
 
 extensions = [
     "mathml",
+    "subscripts",
     "myst_nb",
     "sphinx.ext.autodoc",
     "sphinx.ext.autosummary",
     "sphinx.ext.napoleon",
 ]
 exclude_patterns = ["_build"]
-nitpicky = False
+templates_path = ["_templates"]
 
 # Pages: Markdown with equations. The code of a page runs when the page is built, in an empty
 # folder, and a cell that fails ends the build.
 myst_enable_extensions = ["colon_fence", "deflist", "dollarmath"]
 myst_heading_anchors = 3
 nb_execution_mode = "force"
+nb_execution_show_tb = True
 nb_execution_in_temp = True
 nb_execution_raise_on_error = True
 nb_execution_timeout = 180
@@ -33,11 +36,16 @@ nb_merge_streams = True
 
 # Reference: what the docstrings say.
 default_role = "code"  # `name` in a docstring is code
-autodoc_default_options = {"members": True, "show-inheritance": True}
+autodoc_default_options = {
+    "members": True,
+    "show-inheritance": True,
+    "exclude-members": "model_config, model_post_init",  # of pydantic
+}
 autodoc_member_order = "bysource"
 autodoc_typehints = "signature"
 autodoc_preserve_defaults = True
 autosummary_generate = True
+suppress_warnings = ["ref.python"]  # a name in an annotation may belong to two modules
 napoleon_google_docstring = False
 napoleon_use_ivar = True
 napoleon_use_rtype = False

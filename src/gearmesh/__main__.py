@@ -2,6 +2,6 @@
 
 import sys
 
-from gearmesh.cli import main
+from gearmesh.commands.main import main
 
 sys.exit(main())

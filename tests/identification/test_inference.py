@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 from gearmesh.errors import InputError
 from gearmesh.identification import inference, prediction, sensitivity, synthetic, wording
 from gearmesh.identification.wording import Statement
-from gearmesh.paper.claims import Claim, holds
+from gearmesh.reproduction.claims import Claim, holds
 
 NUMBER = Claim(
     id="F1.1", where="here", figure="fig2", statement="x", kind="threshold",

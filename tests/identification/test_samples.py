@@ -13,7 +13,7 @@ from gearmesh.identification import design, layout, store, survey, table
 from gearmesh.identification.curves import ACCURACY, SampledCurve, scan_all
 from gearmesh.identification.settings import KINDS, load_settings
 from gearmesh.model.damping import variant
-from gearmesh.paper import thresholds
+from gearmesh.reproduction import thresholds
 from gearmesh.solvers.simulation import simulate
 
 SETTINGS = paths.CONFIG / "identify.yaml"

@@ -14,12 +14,12 @@ from hypothesis import strategies as st
 from gearmesh.data import paths
 from gearmesh.data.writing import write_text
 from gearmesh.identification import layout
-from gearmesh.paper.claims import Entry, Evidence, load_ledger, write_entries
-from gearmesh.paper.claims.checking import check_figure
-from gearmesh.paper.equations import EQUATIONS
 from gearmesh.report import page as report
 from gearmesh.report.notebook_page import notebook_page
 from gearmesh.report.presentation import claims_table, expected, found, number, typeset
+from gearmesh.reproduction.claims import Entry, Evidence, load_ledger, write_entries
+from gearmesh.reproduction.claims.checking import check_figure
+from gearmesh.reproduction.equations import EQUATIONS
 
 
 class Page(HTMLParser):

@@ -227,8 +227,8 @@ def test_a_kernel_that_dies_is_told_and_heals(smoke, tmp_path):
     text = notebook.read_text(encoding="utf-8")
     project.edit(
         "notebooks/fig2.ipynb",
-        "from gearmesh.paper.claims import",
-        "import os; os.kill(os.getpid(), 9)\\nfrom gearmesh.paper.claims import",
+        "from gearmesh.reproduction.claims import",
+        "import os; os.kill(os.getpid(), 9)\\nfrom gearmesh.reproduction.claims import",
     )
     finished = project.run("results/figures/fig2.png")
     assert finished.returncode != 0

@@ -7,7 +7,7 @@ import nbformat
 import pytest
 
 from gearmesh.data import paths
-from gearmesh.paper.claims import load_ledger, read_entries
+from gearmesh.reproduction.claims import load_ledger, read_entries
 
 PLACES = {
     "configuration": paths.PAPER,

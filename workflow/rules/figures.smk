@@ -10,7 +10,7 @@ SHOWN = {
     "fig6": ["c-material", "c-material-5x"],
     "fig7": ["c-material", "c-material-5x"],
 }
-STYLE = "src/gearmesh/paper/figures/gearmesh.mplstyle"
+STYLE = "src/gearmesh/reproduction/figures/gearmesh.mplstyle"
 LOOKS = [STYLE, "src/gearmesh/report/templates/claims.html.j2"]
 
 

@@ -4,9 +4,9 @@ import argparse
 from pathlib import Path
 
 from gearmesh.data import paths
-from gearmesh.paper.claims import Evidence, load_ledger
-from gearmesh.paper.claims.checking import check_figure
 from gearmesh.pipeline.job import job
+from gearmesh.reproduction.claims import Evidence, load_ledger
+from gearmesh.reproduction.claims.checking import check_figure
 from gearmesh.study.loading import load_study
 
 

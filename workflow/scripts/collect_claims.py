@@ -4,8 +4,8 @@ import argparse
 from pathlib import Path
 
 from gearmesh.data import paths
-from gearmesh.paper.claims import collect, load_ledger
 from gearmesh.pipeline.job import job
+from gearmesh.reproduction.claims import collect, load_ledger
 
 
 def main() -> None:

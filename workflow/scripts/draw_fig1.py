@@ -3,8 +3,8 @@
 import argparse
 from pathlib import Path
 
-from gearmesh.paper.figures import canvas, fig1
 from gearmesh.pipeline.job import job
+from gearmesh.reproduction.figures import canvas, fig1
 
 
 def main() -> None:

@@ -7,8 +7,8 @@ from gearmesh.identification import layout, table
 from gearmesh.identification.design import stated
 from gearmesh.identification.figures import draw_regions, draw_sensitivity
 from gearmesh.identification.settings import load_settings
-from gearmesh.paper.figures import canvas
 from gearmesh.pipeline.job import job
+from gearmesh.reproduction.figures import canvas
 from gearmesh.study.loading import load_study
 
 

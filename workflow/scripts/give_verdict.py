@@ -5,8 +5,8 @@ from collections import Counter
 
 from gearmesh.data import paths
 from gearmesh.data.writing import write_text
-from gearmesh.paper.claims import Entry, read_entries, verdict
 from gearmesh.pipeline.job import job, note
+from gearmesh.reproduction.claims import Entry, read_entries, verdict
 
 UNEXPECTED = 3
 """Exit status when a claim has another status than the ledger expects."""

@@ -7,8 +7,8 @@ from gearmesh.data import paths
 from gearmesh.identification import boxes, focus, layout, store
 from gearmesh.identification.settings import load_settings
 from gearmesh.identification.survey import tested_claims
-from gearmesh.paper.claims import load_ledger
 from gearmesh.pipeline.job import job
+from gearmesh.reproduction.claims import load_ledger
 
 
 def main() -> None:

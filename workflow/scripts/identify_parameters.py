@@ -8,8 +8,8 @@ from gearmesh.identification import boxes, layout, store, table
 from gearmesh.identification.findings import Analysis, findings
 from gearmesh.identification.settings import load_settings
 from gearmesh.identification.survey import tested_claims
-from gearmesh.paper.claims import load_ledger
 from gearmesh.pipeline.job import job, tell
+from gearmesh.reproduction.claims import load_ledger
 
 
 def main() -> None:

@@ -6,8 +6,8 @@ from pathlib import Path
 
 from gearmesh.data import paths
 from gearmesh.data.writing import write_text
-from gearmesh.paper.thresholds import locate
 from gearmesh.pipeline.job import job
+from gearmesh.reproduction.thresholds import locate
 from gearmesh.study.loading import load_study
 
 

@@ -1,6 +1,6 @@
 """Response curves of one sample: separate runs, or sweeps up or down.
 
-The searches of the ledger (`gearmesh.paper.thresholds`) work on these curves. They scan less
+The searches of the ledger (`gearmesh.reproduction.thresholds`) work on these curves. They scan less
 closely than for the study itself and locate thresholds to ± 0.001; how coarse a scan may be
 depends on the variant. The scans of many samples are run together, sweeps step by step, so that
 the solver's lanes are never empty.
@@ -15,7 +15,7 @@ from gearmesh.dynamics.response_curves import ResponseCurve
 from gearmesh.identification.design import Sample, pair_of
 from gearmesh.model.damping import variant
 from gearmesh.model.motion import Problem
-from gearmesh.paper.thresholds import FIRST, LAST, LOOPS_FROM
+from gearmesh.reproduction.thresholds import FIRST, LAST, LOOPS_FROM
 from gearmesh.solvers.response import Response
 from gearmesh.solvers.simulation import simulate
 from gearmesh.study.pair import Pair

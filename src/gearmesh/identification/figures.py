@@ -11,8 +11,8 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
 from gearmesh.identification.settings import Range
-from gearmesh.paper.figures import palette
-from gearmesh.paper.figures.canvas import WIDTH, styled
+from gearmesh.reproduction.figures import palette
+from gearmesh.reproduction.figures.canvas import WIDTH, styled
 
 SYMBOLS = {
     "backlash": "$s/y_{st}$",

@@ -15,7 +15,7 @@ from gearmesh.identification.wording import (
     statements,
     weight_of_claims,
 )
-from gearmesh.paper.claims import REPRODUCED, Claim
+from gearmesh.reproduction.claims import REPRODUCED, Claim
 
 SURVEY, NATURAL, TRUTH = "survey", "natural", "truth"
 """Even designs: the plausible space, the natural reading, synthetic papers."""

@@ -8,7 +8,7 @@ from gearmesh.identification.boxes import Box, box_of
 from gearmesh.identification.settings import Design
 from gearmesh.identification.store import Samples
 from gearmesh.identification.wording import closeness, statements, weight_of_claims
-from gearmesh.paper.claims import Claim
+from gearmesh.reproduction.claims import Claim
 
 BEST = 64
 """How many of the best samples span the box of a focused design."""

@@ -10,10 +10,10 @@ from matplotlib.lines import Line2D
 from gearmesh.identification.figures import SYMBOLS, TICKS
 from gearmesh.identification.store import Samples
 from gearmesh.identification.wording import statements, weight_of_claims
-from gearmesh.paper.claims import Claim
-from gearmesh.paper.figures import palette
-from gearmesh.paper.figures.canvas import WIDTH, styled
-from gearmesh.paper.thresholds import FIRST, LAST
+from gearmesh.reproduction.claims import Claim
+from gearmesh.reproduction.figures import palette
+from gearmesh.reproduction.figures.canvas import WIDTH, styled
+from gearmesh.reproduction.thresholds import FIRST, LAST
 
 
 @styled

@@ -11,10 +11,10 @@ from gearmesh.identification import store
 from gearmesh.identification.curves import SampledCurve, scan_all
 from gearmesh.identification.design import Sample, pair_of, samples
 from gearmesh.identification.settings import Settings
-from gearmesh.paper.claims.checking import MEASURES
-from gearmesh.paper.claims.evidence import Evidence, NotInStudy, NotLocated
-from gearmesh.paper.claims.fig6 import LESS, MORE, NU_OF_THE_CROSSING
-from gearmesh.paper.thresholds import NONLINEAR, STROBED_AT, locate_on
+from gearmesh.reproduction.claims.checking import MEASURES
+from gearmesh.reproduction.claims.evidence import Evidence, NotInStudy, NotLocated
+from gearmesh.reproduction.claims.fig6 import LESS, MORE, NU_OF_THE_CROSSING
+from gearmesh.reproduction.thresholds import NONLINEAR, STROBED_AT, locate_on
 from gearmesh.study.pair import Pair
 
 VARIANTS = (

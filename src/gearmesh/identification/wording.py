@@ -7,7 +7,7 @@ import numpy as np
 
 from gearmesh.errors import InputError
 from gearmesh.identification.settings import Wording
-from gearmesh.paper.claims import Bound, Claim
+from gearmesh.reproduction.claims import Bound, Claim
 
 Columns = Mapping[str, np.ndarray]
 """Column -> values of all samples, shape (n_samples,); see `gearmesh.identification.survey`."""

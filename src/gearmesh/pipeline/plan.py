@@ -12,8 +12,8 @@ from gearmesh.data import batches, casefile, paths, provenance
 from gearmesh.data.batches import Batch
 from gearmesh.errors import InputError
 from gearmesh.identification import layout
-from gearmesh.paper.claims import Claim
 from gearmesh.pipeline.job import tell
+from gearmesh.reproduction.claims import Claim
 from gearmesh.study.cases import Case, Study
 from gearmesh.study.loading import load_study
 
@@ -231,11 +231,11 @@ def sources(*files: str) -> list[str]:
 def checked_by(figure: str, *files: str) -> list[str]:
     """Return files that check the claims of a figure, and what they import of it.
 
-    `gearmesh.paper.claims.checking` imports the checks of all figures; a figure depends on its
+    `gearmesh.reproduction.claims.checking` imports the checks of all figures; a figure depends on its
     own, and on what these import.
     """
-    checks = {provenance.module(f"paper/claims/{name}") for name in paths.CHECKED}
-    own = provenance.module(f"paper/claims/{figure}")
+    checks = {provenance.module(f"reproduction/claims/{name}") for name in paths.CHECKED}
+    own = provenance.module(f"reproduction/claims/{figure}")
     others = {_relative(check) for check in checks - {own, *provenance.sources(own)}}
     return [file for file in sources(*files) if file not in others]
 

@@ -20,11 +20,11 @@ from gearmesh.data.casefile import STATUSES
 from gearmesh.data.datasets import open_dataset
 from gearmesh.data.writing import write_text
 from gearmesh.identification import layout, table
-from gearmesh.identification.presentation import section
 from gearmesh.identification.settings import load_settings
-from gearmesh.paper.claims import Entry, load_ledger, read_entries, verdict
-from gearmesh.paper.equations import EQUATIONS
+from gearmesh.report.identified import section
 from gearmesh.report.presentation import environment, number
+from gearmesh.reproduction.claims import Entry, load_ledger, read_entries, verdict
+from gearmesh.reproduction.equations import EQUATIONS
 from gearmesh.study.cases import Study
 from gearmesh.study.pair import DERIVED
 

@@ -10,8 +10,8 @@ from typing import Any
 import jinja2
 from markupsafe import Markup, escape
 
-from gearmesh.paper.claims import DEVIATES, NOT_TESTABLE, REPRODUCED, Bound, Claim, Entry
-from gearmesh.paper.figures.palette import COURSES
+from gearmesh.reproduction.claims import DEVIATES, NOT_TESTABLE, REPRODUCED, Bound, Claim, Entry
+from gearmesh.reproduction.figures.palette import COURSES
 
 TEMPLATES = Path(__file__).parent / "templates"
 

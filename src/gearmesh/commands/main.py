@@ -1,0 +1,194 @@
+"""Read the command line and run the command that it names."""
+
+import argparse
+import os
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+from typing import NoReturn
+
+from gearmesh import __version__
+from gearmesh.errors import InputError
+
+BAD_INPUT = 2
+INTERRUPTED = 130
+OUT_OF_MEMORY = 1
+
+
+class _Parser(argparse.ArgumentParser):
+    """Parser that reports a wrong command line like all other bad input, and never guesses."""
+
+    def __init__(self, **settings: object) -> None:
+        super().__init__(allow_abbrev=False, **settings)  # type: ignore[arg-type]
+
+    def error(self, message: str) -> NoReturn:
+        raise InputError(f"{message} (see {self.prog} --help)")
+
+
+def _check_options(parser: argparse.ArgumentParser, arguments: Sequence[str]) -> None:
+    """Refuse unknown options by name, before argparse misses the one that was meant."""
+    known = {text for action in _actions(parser) for text in action.option_strings}
+    for argument in arguments:
+        option = argument.partition("=")[0]
+        if option.startswith("--") and option not in (*known, "--"):
+            from gearmesh.study.schema import nearest
+
+            raise InputError(f"{option}: unknown option{nearest(option, known)}")
+
+
+def _actions(parser: argparse.ArgumentParser) -> list[argparse.Action]:
+    """Return the actions of a parser and of its commands."""
+    found = list(parser._actions)
+    for action in parser._actions:
+        if isinstance(action, argparse._SubParsersAction):
+            for command in action.choices.values():
+                found += _actions(command)
+    return found
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Run the command; returns the exit status, 2 for bad input."""
+    for stream in (sys.stdout, sys.stderr):
+        if hasattr(stream, "reconfigure"):
+            stream.reconfigure(errors="replace")  # Greek letters on a terminal that has none
+    try:
+        arguments = sys.argv[1:] if arguments is None else arguments
+        parser = _parser()
+        _check_options(parser, arguments)
+        options = parser.parse_args(arguments)
+        status = options.run(options)
+        sys.stdout.flush()
+        return int(status)
+    except InputError as error:
+        print(f"gearmesh: error: {' '.join(str(error).split())}", file=sys.stderr)
+        return BAD_INPUT
+    except KeyboardInterrupt:
+        print("gearmesh: interrupted", file=sys.stderr)
+        return INTERRUPTED
+    except MemoryError:
+        print(
+            "gearmesh: error: not enough memory; keep fewer revolutions or take fewer samples",
+            file=sys.stderr,
+        )
+        return OUT_OF_MEMORY
+    except BrokenPipeError:  # the reader of our output has left, as `head` does
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        return 0
+
+
+def _parser() -> _Parser:
+    parser = _Parser(
+        prog="gearmesh", description="Nonlinear damping in the mesh of a spur gear pair."
+    )
+    parser.add_argument("--version", action="version", version=f"gearmesh {__version__}")
+    commands = parser.add_subparsers(required=True, metavar="COMMAND", parser_class=_Parser)
+    pair = _pair_options()
+    _add_runs(commands, pair)
+    _add_pictures(commands)
+    _add_tables(commands, pair)
+    return parser
+
+
+def _pair_options() -> _Parser:
+    """Return the options that choose the pair and replace its parameters."""
+    options = _Parser(add_help=False)
+    options.add_argument(
+        "--config", metavar="FILE", type=Path, help="the study (default: the paper's)"
+    )
+    options.add_argument(
+        "--set",
+        metavar="NAME=VALUE",
+        action="append",
+        default=[],
+        dest="overrides",
+        help="set a parameter, such as backlash='40 um'; may be repeated",
+    )
+    return options
+
+
+def _add_runs(commands: argparse._SubParsersAction, pair: _Parser) -> None:
+    run = _Parser(add_help=False)
+    run.add_argument("--revolutions", metavar="N", help="revolutions that are run")
+    run.add_argument("--kept", metavar="N", help="last revolutions that are kept")
+    run.add_argument(
+        "--start",
+        metavar=("Y", "V"),
+        nargs=2,
+        help="y and dy/dtau_s at the start, such as '12 um' '0 um'; a bare number counts y_st",
+    )
+    run.add_argument(
+        "-o", "--output", required=True, metavar="FILE.nc", type=Path, help="file to write"
+    )
+
+    simulate = commands.add_parser(
+        "simulate", parents=[pair, run], help="integrate one run and write its time course"
+    )
+    simulate.add_argument("--variant", required=True, help="see 'gearmesh variants'")
+    simulate.add_argument("--nu", required=True, help="mesh frequency nu_s")
+    simulate.set_defaults(run=_command("runs", "simulate"))
+
+    sweep = commands.add_parser(
+        "sweep", parents=[pair, run], help="integrate variants over mesh frequencies"
+    )
+    sweep.add_argument(
+        "--variant", required=True, nargs="+", help="one or several, see 'gearmesh variants'"
+    )
+    sweep.add_argument(
+        "--nu", required=True, metavar="START:STOP:STEP", help="mesh frequencies nu_s"
+    )
+    sweep.add_argument(
+        "--direction",
+        choices=("up", "down"),
+        help="let each run go on from the end of the run before it",
+    )
+    sweep.set_defaults(run=_command("runs", "sweep"))
+
+
+def _add_pictures(commands: argparse._SubParsersAction) -> None:
+    plot = commands.add_parser(
+        "plot", help="draw phase plane, time course and stroboscopic points of a run"
+    )
+    plot.add_argument("case", metavar="FILE.nc", type=Path, help="a run with its time course")
+    plot.add_argument(
+        "-o",
+        "--output",
+        metavar="PICTURE",
+        type=Path,
+        help="PNG, SVG or PDF file (default: FILE.png)",
+    )
+    plot.set_defaults(run=_command("pictures", "plot"))
+
+    compare = commands.add_parser(
+        "compare", help="draw two runs on each other, and list their differences"
+    )
+    compare.add_argument("first", metavar="A.nc", type=Path)
+    compare.add_argument("second", metavar="B.nc", type=Path)
+    compare.add_argument(
+        "-o",
+        "--output",
+        metavar="PICTURE",
+        type=Path,
+        help="PNG, SVG or PDF file (default: A-B.png)",
+    )
+    compare.set_defaults(run=_command("pictures", "compare"))
+
+
+def _add_tables(commands: argparse._SubParsersAction, pair: _Parser) -> None:
+    variants = commands.add_parser("variants", help="list the damping variants of Tab. 1")
+    variants.set_defaults(run=_command("tables", "variants"))
+
+    parameters = commands.add_parser(
+        "parameters", parents=[pair], help="list every parameter with value, unit, kind and reason"
+    )
+    parameters.set_defaults(run=_command("tables", "parameters"))
+
+
+def _command(module: str, name: str):  # type: ignore[no-untyped-def]
+    """Return a function that imports a command when it is run."""
+
+    def run(options: argparse.Namespace) -> int:
+        from importlib import import_module
+
+        return int(getattr(import_module(f"gearmesh.commands.{module}"), name)(options))
+
+    return run

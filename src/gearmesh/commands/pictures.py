@@ -1,0 +1,59 @@
+"""``gearmesh plot`` and ``gearmesh compare``."""
+
+import argparse
+import json
+from importlib.util import find_spec
+from pathlib import Path
+from typing import Any
+
+from gearmesh.commands.tables import print_table
+from gearmesh.errors import InputError
+
+
+def plot(options: argparse.Namespace) -> int:
+    """Draw one run."""
+    figures = _figures()
+    run = figures.read_run(options.case)
+    output = options.output or options.case.with_suffix(".png")
+    figures.save(figures.draw([run]), output)
+    print(f"{output}: phase plane, stroboscopic points and time course of {_label(run)}")
+    return 0
+
+
+def compare(options: argparse.Namespace) -> int:
+    """Draw two runs on each other and list what differs."""
+    figures = _figures()
+    runs = [figures.read_run(path) for path in (options.first, options.second)]
+    for row in _parameter_rows(*runs):
+        print(row)
+    print_table(figures.differences(*runs))
+    output = options.output or Path(f"{options.first.stem}-{options.second.stem}.png")
+    figures.save(figures.draw(runs), output)
+    print(f"{output}: both runs")
+    return 0
+
+
+def _figures() -> Any:
+    """Import the figures, which need matplotlib."""
+    if find_spec("matplotlib") is None:
+        raise InputError("pictures need matplotlib: pip install 'gearmesh[study]'")
+    from gearmesh.report import run_figures
+
+    return run_figures
+
+
+def _label(run: Any) -> str:
+    return f"{run.attrs['variant']}, nu_s = {run.attrs['nu_s']:g}"
+
+
+def _parameter_rows(first: Any, second: Any) -> list[str]:
+    """Say in which variant, frequency and parameters two runs differ."""
+    stated = [
+        {"variant": run.attrs["variant"], "nu_s": run.attrs["nu_s"]}
+        | json.loads(run.attrs["parameters"])
+        for run in (first, second)
+    ]
+    names = [name for name in stated[0] if stated[0][name] != stated[1].get(name)]
+    if not names:
+        return ["A and B state the same run"]
+    return [f"{name}: A {stated[0][name]}, B {stated[1].get(name)}" for name in names]

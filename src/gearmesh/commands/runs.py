@@ -1,0 +1,154 @@
+"""``gearmesh simulate`` and ``gearmesh sweep``."""
+
+import argparse
+import os
+from decimal import Decimal, InvalidOperation
+from pathlib import Path
+
+from gearmesh.commands.tables import load_pair
+from gearmesh.data.writing import replacing
+from gearmesh.errors import InputError
+from gearmesh.model.damping import variant
+from gearmesh.study.frequencies import MAX_CASES, read_nu
+from gearmesh.study.pair import Pair
+
+NOT_INTEGRATED = 1
+_NETCDF = (b"CDF", b"\x89HDF")
+
+
+def simulate(options: argparse.Namespace) -> int:
+    """Integrate one run and write it with its time course."""
+    chosen = variant(options.variant)
+    nu = _frequency(options.nu)
+    pair = _pair(options)
+    replaces = _check_output(options.output)
+
+    from gearmesh.data import casefile
+    from gearmesh.solvers.simulation import simulate as integrate
+    from gearmesh.study.cases import Case
+
+    case = Case(chosen, nu, time_course=True)
+    [response] = integrate([pair.problem(chosen, nu)], pair.tolerance, pair.samples_per_period)
+    casefile.write_case(
+        options.output, casefile.attributes(pair, case), casefile.record(response, pair)
+    )
+    if response.status != "ok":
+        print(f"gearmesh: {options.output}: not integrated: {response.status}")
+        return NOT_INTEGRATED
+    y_st = pair.static_deflection
+    print(
+        f"{options.output}{replaces}: {chosen.name} at nu_s = {nu:g}, "
+        f"y from {response.y_min * y_st:.6g} to {response.y_max * y_st:.6g} mm"
+    )
+    if response.sensitive:
+        error = max(response.y_max_error, response.y_min_error) * y_st
+        print(
+            f"sensitive: this motion amplifies small errors; y_max and y_min may be off by "
+            f"{error:.1g} mm"
+        )
+    return 0
+
+
+def sweep(options: argparse.Namespace) -> int:
+    """Integrate variants over mesh frequencies and write one dataset."""
+    chosen = [variant(name) for name in options.variant]
+    nus = _frequencies(options.nu)
+    pair = _pair(options)
+    replaces = _check_output(options.output)
+
+    from gearmesh.interface.runs import sweep as integrate
+
+    found = integrate(pair, chosen, nus, direction=options.direction)
+    with replacing(options.output) as temporary:
+        found.to_netcdf(temporary, engine="netcdf4")
+    failed = int((found["status"] != 0).sum())
+    sensitive = int((found["sensitive"] == 1).sum())
+    print(
+        f"{options.output}{replaces}: {found['status'].size} runs, {failed} not integrated, "
+        f"{sensitive} sensitive"
+    )
+    return NOT_INTEGRATED if failed else 0
+
+
+def _pair(options: argparse.Namespace) -> Pair:
+    """Return the pair with the settings of the run."""
+    from gearmesh.interface.statements import with_settings
+
+    start = options.start and tuple(_number_or_text(text) for text in options.start)
+    return with_settings(
+        load_pair(options),
+        start,
+        revolutions=_whole("--revolutions", options.revolutions),
+        kept_revolutions=_whole("--kept", options.kept),
+    )
+
+
+def _whole(option: str, text: str | None) -> int | None:
+    if text is None:
+        return None
+    if not text.isdecimal():
+        raise InputError(f"{option}: found '{text}'; allowed is a whole number")
+    return int(text)
+
+
+def _number_or_text(text: str) -> float | str:
+    try:
+        return float(text)
+    except ValueError:
+        return text
+
+
+def _frequency(text: str) -> float:
+    try:
+        return read_nu(text)
+    except ValueError as error:
+        hint = "; use a decimal point" if "," in text else ""
+        raise InputError(f"--nu: found '{text}': {error}{hint}") from None
+
+
+def _frequencies(text: str) -> list[float]:
+    """Read ``START:STOP:STEP``, or one frequency."""
+    parts = text.split(":")
+    if len(parts) == 1:
+        return [_frequency(text)]
+    if len(parts) != 3:
+        raise InputError(f"--nu: found '{text}'; allowed is START:STOP:STEP, or one number")
+    low, high = (Decimal(repr(_frequency(part))) for part in parts[:2])
+    try:
+        step = Decimal(parts[2])
+    except InvalidOperation:
+        raise InputError(f"--nu: found step '{parts[2]}'; allowed is a positive number") from None
+    if not step > 0 or not step.is_finite() or high < low:
+        raise InputError(f"--nu: found '{text}'; allowed is START <= STOP and a positive STEP")
+    count = int((high - low) / step) + 1
+    if count > MAX_CASES:
+        raise InputError(f"--nu: '{text}' makes {count} frequencies; allowed are {MAX_CASES}")
+    return [float(low + i * step) for i in range(count)]
+
+
+def _check_output(path: Path) -> str:
+    """Refuse an output before the run that could not be written after it, or would destroy others.
+
+    Returns
+    -------
+    str
+        What to say of a run that was there before; empty if there was none.
+    """
+    folder = path.parent
+    if path.is_dir():
+        raise InputError(f"--output: {path} is a folder; allowed is the name of a file")
+    if path.suffix != ".nc":
+        raise InputError(
+            f"--output: found {path.name}; the file is NetCDF, so its name ends in .nc"
+        )
+    if not folder.is_dir():
+        raise InputError(f"--output: {path}: there is no folder {folder}")
+    if not os.access(folder, os.W_OK):
+        raise InputError(f"--output: {path}: the folder {folder} is not writable")
+    if not path.exists():
+        return ""
+    with path.open("rb") as file:
+        start = file.read(4)
+    if start and not start.startswith(_NETCDF):
+        raise InputError(f"--output: {path} exists and is no NetCDF file; choose another name")
+    return " (replaced)"

@@ -1,0 +1,108 @@
+"""Responses as xarray datasets with units, as the public functions return them."""
+
+import json
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+import xarray as xr
+
+from gearmesh.data.casefile import FIELDS, SAMPLE_FIELDS, Field, Record, attributes, record
+from gearmesh.errors import InputError
+from gearmesh.solvers.response import Response
+from gearmesh.study.cases import Case
+from gearmesh.study.pair import Pair
+
+_FINAL_STATE = "final_state"
+_COUNTS = {"i1": -1, "i4": -1}
+
+
+def variable_attributes(field: Field, relative: bool = False) -> dict[str, object]:
+    """Return the CF attributes of a field, or of its twin in static deflections."""
+    stated: dict[str, object] = {
+        "units": "1" if relative else field.unit,
+        "long_name": field.long_name + (", in static deflections y_st" if relative else ""),
+    }
+    if field.flags:
+        stated["flag_values"] = np.array(list(field.flags), field.kind)
+        stated["flag_meanings"] = " ".join(field.flags.values())
+    return stated
+
+
+def run_dataset(response: Response, pair: Pair, case: Case) -> xr.Dataset:
+    """Return one run as a dataset, with the variables and attributes of its case file.
+
+    The samples have the dimension and coordinate ``time``, so ``ds.y.plot()`` works.
+    """
+    columns = record(response, pair)
+    stated = attributes(pair, case) | {_FINAL_STATE: json.dumps(response.final_state)}
+    dataset = xr.Dataset(attrs=stated)
+    for field in (*FIELDS, *SAMPLE_FIELDS):
+        if field.name in columns:
+            dimension = "time" if field.dimension == "sample" else field.dimension
+            for name, values, stated in _twins(field, columns):
+                dataset[name] = ((dimension,) if dimension else (), values, stated)
+    return dataset.set_coords("time") if "time" in dataset else dataset
+
+
+def final_state(dataset: xr.Dataset) -> tuple[float, ...]:
+    """Return the state at the end of the run that a dataset holds.
+
+    Raises
+    ------
+    InputError
+        If the dataset holds no run, or one that failed.
+    """
+    state = json.loads(dataset.attrs.get(_FINAL_STATE, "null"))
+    if state is None:
+        raise InputError("start: the dataset holds no run that came to its end")
+    return tuple(state)
+
+
+def _twins(field: Field, columns: Record) -> list[tuple[str, np.ndarray, dict[str, object]]]:
+    """Return name, values and attributes of a variable and of its twin."""
+    found = [(field.name, columns[field.name], variable_attributes(field))]
+    if field.relative:
+        found.append((field.relative, columns[field.relative], variable_attributes(field, True)))
+    return found
+
+
+def grid_dataset(
+    responses: Sequence[Response], pairs: Sequence[Pair], axes: Mapping[str, Sequence[object]]
+) -> xr.Dataset:
+    """Return runs on a grid as a dataset.
+
+    Parameters
+    ----------
+    responses : sequence of Response
+        In the order of the grid, the last axis running fastest.
+    pairs : sequence of Pair
+        The pair of each run; it sets the scales.
+    axes : mapping of str to sequence
+        Names and values of the axes, in their order.
+
+    Returns
+    -------
+    xarray.Dataset
+        The scalars over the axes, and extrema and stroboscopic points over one axis more. The
+        rows of extrema are filled with not-a-number.
+    """
+    shape = tuple(len(values) for values in axes.values())
+    records = [record(response, pair) for response, pair in zip(responses, pairs, strict=True)]
+    dataset = xr.Dataset(coords={name: (name, list(values)) for name, values in axes.items()})
+    for field in FIELDS:
+        dimensions = (*axes, field.dimension) if field.dimension else tuple(axes)
+        for name, _, stated in _twins(field, records[0]):
+            cells = _stacked(field, [columns[name] for columns in records])
+            dataset[name] = (dimensions, cells.reshape(*shape, *cells.shape[1:]), stated)
+    return dataset
+
+
+def _stacked(field: Field, rows: Sequence[np.ndarray]) -> np.ndarray:
+    """Stack rows of unequal length; whole numbers and flags are filled with -1."""
+    if not field.dimension:
+        return np.array(rows)
+    longest = max(row.size for row in rows)
+    cells = np.full((len(rows), longest), _COUNTS.get(field.kind, np.nan), field.kind)
+    for cell, row in zip(cells, rows, strict=True):
+        cell[: row.size] = row
+    return cells

@@ -1,0 +1,189 @@
+"""Simulate one run, or sweep many."""
+
+import itertools
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from typing import Literal
+
+import numpy as np
+import xarray as xr
+
+from gearmesh.data.labelled import final_state, grid_dataset, run_dataset
+from gearmesh.dynamics.sweeps import run_chains
+from gearmesh.errors import InputError
+from gearmesh.interface.statements import (
+    Start,
+    read_frequencies,
+    read_frequency,
+    read_variant,
+    read_variants,
+    with_settings,
+)
+from gearmesh.model.damping import Variant
+from gearmesh.solvers import simulation
+from gearmesh.study.cases import Case
+from gearmesh.study.pair import Pair
+
+
+def simulate(
+    pair: Pair,
+    variant: str | Variant,
+    nu: float,
+    *,
+    revolutions: int | None = None,
+    kept: int | None = None,
+    samples_per_period: int | None = None,
+    start: Start | xr.Dataset | None = None,
+    tolerance: float | None = None,
+) -> xr.Dataset:
+    """Integrate one run, and return it with its time course.
+
+    Parameters
+    ----------
+    pair : Pair
+        The gear pair; `gearmesh.reproduction` returns the paper's.
+    variant : str or Variant
+        Which damping terms act where, as ``"c-lubricant"`` (``gearmesh variants`` lists all).
+    nu : float
+        Mesh frequency ν_s = ω_c/Ω_s.
+    revolutions, kept, samples_per_period : int, optional
+        Revolutions that are run, how many of the last are kept, and samples of the time course
+        in a mesh period; by default those of the pair (5, 1 and 256 in the paper).
+    start : tuple or Dataset, optional
+        Initial condition: (y, dy/dτ_s), each with its unit or as a number of static deflections;
+        or an earlier run, from whose end this run goes on. By default static equilibrium.
+    tolerance : float, optional
+        Local error tolerance, relative to y_st and y_st Ω_s; by default that of the pair (1e-10).
+
+    Returns
+    -------
+    xarray.Dataset
+        The variables of a case file. The time course has the coordinate ``time`` (s); lengths are
+        in mm, and with ``_rel`` behind the name in static deflections. `status` is 0 (ok), or says
+        why the run could not be integrated.
+
+    Raises
+    ------
+    InputError
+        One line, if an argument is wrong.
+
+    Examples
+    --------
+    >>> import gearmesh as gm
+    >>> ds = gm.simulate(gm.paper(), "c-lubricant", nu=0.66)
+    >>> float(ds.y_max_rel) > 1.0
+    True
+    """
+    earlier = start if isinstance(start, xr.Dataset) else None
+    pair = with_settings(
+        pair,
+        None if isinstance(start, xr.Dataset) else start,
+        revolutions=revolutions,
+        kept_revolutions=kept,
+        samples_per_period=samples_per_period,
+        tolerance=tolerance,
+    )
+    case = Case(read_variant(variant), read_frequency(nu), time_course=True)
+    problem = pair.problem(case.variant, case.nu)
+    if earlier is not None:
+        problem = replace(problem, initial_state=final_state(earlier))
+    [response] = simulation.simulate([problem], pair.tolerance, pair.samples_per_period)
+    return run_dataset(response, pair, case)
+
+
+def sweep(
+    pair: Pair,
+    variants: str | Variant | Sequence[str | Variant],
+    nu: float | Sequence[float] | np.ndarray,
+    *,
+    over: Mapping[str, Sequence[object]] | None = None,
+    direction: Literal["up", "down"] | None = None,
+    revolutions: int | None = None,
+    kept: int | None = None,
+    start: Start | None = None,
+    tolerance: float | None = None,
+) -> xr.Dataset:
+    """Integrate runs over variants, mesh frequencies and, if wanted, parameters.
+
+    Parameters
+    ----------
+    pair : Pair
+        The gear pair.
+    variants : str, Variant or sequence of these
+        Which damping terms act where.
+    nu : array_like
+        Mesh frequencies ν_s.
+    over : mapping of str to sequence, optional
+        Parameters to vary and their values, as ``{"backlash": ["40 um", "8 y_st"]}``.
+    direction : {"up", "down"}, optional
+        Let each run go on from the end of the run at the neighbouring ν_s, below or above. By
+        default all runs start alike.
+    revolutions, kept, start, tolerance
+        As for `simulate`.
+
+    Returns
+    -------
+    xarray.Dataset
+        The scalars of a case file over (variant, nu, *parameters*), extrema over one axis more
+        (``extremum``, filled with not-a-number) and stroboscopic points over ``boundary``.
+
+    Raises
+    ------
+    InputError
+        One line, if an argument is wrong.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> import gearmesh as gm
+    >>> ds = gm.sweep(gm.paper(), ["c-material", "c-lubricant"], np.linspace(0.6, 0.7, 11))
+    >>> ds.y_max.sizes["nu"]
+    11
+    """
+    if direction not in (None, "up", "down"):
+        raise InputError(f"direction: found {direction!r}; allowed are 'up', 'down' and None")
+    chosen, nus = read_variants(variants), read_frequencies(nu)
+    pair = with_settings(
+        pair, start, revolutions=revolutions, kept_revolutions=kept, tolerance=tolerance
+    )
+    over = over or {}
+    pairs = [
+        pair.replace(**dict(zip(over, values, strict=True)))
+        for values in itertools.product(*over.values())
+    ]
+    order = sorted(nus, reverse=direction == "down")
+    places = list(itertools.product(chosen, pairs))
+    chains = [[one.problem(variant, x) for x in order] for variant, one in places]
+    if direction is None:
+        problems = list(itertools.chain(*chains))
+        found = iter(simulation.simulate(problems, pair.tolerance))
+        responses = [list(itertools.islice(found, len(order))) for _ in chains]
+    else:
+        responses = run_chains(chains, pair.tolerance)
+    at = {x: i for i, x in enumerate(order)}
+    rows = [responses[i * len(pairs) + j][at[x]] for i in range(len(chosen)) for x in nus
+            for j in range(len(pairs))]  # fmt: skip
+    axes = {"variant": [variant.name for variant in chosen], "nu": nus}
+    axes |= {name: _axis(name, values, pair) for name, values in over.items()}
+    dataset = grid_dataset(rows, pairs * (len(rows) // len(pairs)), axes)
+    return _described(dataset, pair, over)
+
+
+def _axis(name: str, values: Sequence[object], pair: Pair) -> list[float]:
+    """Return the values of a parameter in its unit, as an axis."""
+    found = [getattr(pair.replace(**{name: value}), name) for value in values]
+    for value in found:
+        if not isinstance(value, int | float):
+            raise InputError(f"over: {name}: found {value!r}; allowed are single numbers")
+    return found
+
+
+def _described(dataset: xr.Dataset, pair: Pair, over: Mapping[str, object]) -> xr.Dataset:
+    """Give the axes of a sweep their units and names."""
+    dataset["nu"].attrs = {"units": "1", "long_name": "mesh frequency nu_s"}
+    dataset["variant"].attrs = {"long_name": "damping variant"}
+    for row in pair.parameters:
+        if row.name in over:
+            dataset[row.name].attrs = {"units": row.unit, "long_name": row.description}
+    dataset.attrs = {"parameters": pair.canonical()}
+    return dataset

@@ -1,0 +1,84 @@
+"""Read what callers give: variants, mesh frequencies, initial conditions."""
+
+from collections.abc import Iterable, Sequence
+from contextlib import AbstractContextManager
+from importlib.resources import as_file, files
+from pathlib import Path
+
+import numpy as np
+
+from gearmesh.errors import InputError
+from gearmesh.model.damping import Variant, variant
+from gearmesh.study.frequencies import read_nu
+from gearmesh.study.loading import load_study
+from gearmesh.study.pair import Pair
+
+Start = tuple[object, object]
+"""Initial condition: y and dy/dτ_s, each with its unit, or a number of static deflections."""
+
+
+def paper_file() -> AbstractContextManager[Path]:
+    """Return the file of the paper's study, which the package carries, as a context."""
+    return as_file(files("gearmesh.reproduction") / "paper.yaml")
+
+
+def paper() -> Pair:
+    """Return the gear pair of the paper.
+
+    Returns
+    -------
+    Pair
+        Its printed, derived and assumed parameters; `Pair.parameters` lists them with reasons.
+    """
+    with paper_file() as path:
+        return load_study(path).pair
+
+
+def read_variant(value: str | Variant) -> Variant:
+    """Return a variant by its name, as ``"c-lubricant"`` or ``"c-material-5x"``."""
+    return value if isinstance(value, Variant) else variant(value)
+
+
+def read_variants(values: str | Variant | Iterable[str | Variant]) -> list[Variant]:
+    """Return one variant or several."""
+    if isinstance(values, str | Variant):
+        values = [values]
+    found = [read_variant(value) for value in values]
+    if not found:
+        raise InputError("variants: none given; allowed is one name or several")
+    return found
+
+
+def read_frequency(nu: float) -> float:
+    """Return a mesh frequency ν_s; raises InputError if it is none."""
+    try:
+        return read_nu(nu.item() if isinstance(nu, np.generic) else nu)
+    except ValueError as error:
+        raise InputError(f"nu: found {nu!r}; {error}") from None
+
+
+def read_frequencies(nu: float | Sequence[float] | np.ndarray) -> list[float]:
+    """Return one mesh frequency or several, without repetition."""
+    found = [read_frequency(float(value)) for value in np.atleast_1d(np.asarray(nu, float))]
+    if not found:
+        raise InputError("nu: none given; allowed is one frequency or several")
+    if len(set(found)) < len(found):
+        raise InputError("nu: a frequency stands there twice; allowed is each once")
+    return found
+
+
+def with_settings(pair: Pair, start: Start | None = None, **settings: object) -> Pair:
+    """Return a pair with the settings that are given, and with an initial condition."""
+    changes = {name: value for name, value in settings.items() if value is not None}
+    if start is not None:
+        if not isinstance(start, tuple | list) or len(start) != 2:
+            raise InputError(f"start: found {start!r}; allowed is (y, dy/dtau_s), or a dataset")
+        displacement, velocity = (_length(value) for value in start)
+        changes |= {"initial_displacement": displacement, "initial_velocity": velocity}
+    return pair.replace(**changes) if changes else pair
+
+
+def _length(value: object) -> object:
+    """Take a bare number as a number of static deflections."""
+    number = isinstance(value, int | float | np.number) and not isinstance(value, bool)
+    return f"{float(value)!r} y_st" if number else value

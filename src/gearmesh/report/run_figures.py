@@ -1,0 +1,130 @@
+"""Figures of one run, and of two runs on each other, for ``gearmesh plot`` and ``compare``."""
+
+from collections.abc import Sequence
+from pathlib import Path
+
+import numpy as np
+import xarray as xr
+from matplotlib import style
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from gearmesh.data.writing import replacing
+from gearmesh.errors import InputError
+from gearmesh.reproduction.figures import palette
+from gearmesh.reproduction.figures.canvas import STYLE, WIDTH, V, shade_regions, styled
+from gearmesh.reproduction.figures.orbit import last_periods, scale, switches
+
+PERIODS_SHOWN = 5
+FORMATS = (".png", ".svg", ".pdf")
+
+_LOOKS = ((palette.BLUE, "-"), (palette.RED, "--"))
+
+
+@styled
+def draw(runs: Sequence[xr.Dataset]) -> Figure:
+    """Draw runs: phase plane, stroboscopic points and the time course of the last periods.
+
+    Parameters
+    ----------
+    runs : sequence of Dataset
+        One or two case files with their time courses.
+
+    Returns
+    -------
+    Figure
+        Left: the phase plane of the kept revolution with its stroboscopic points. Right: y and
+        C(t) over the last mesh periods.
+    """
+    figure = Figure(figsize=(WIDTH, 3.6), layout="constrained")
+    plane, times = figure.subplots(1, 2, width_ratios=(1.0, 1.4))
+    letters = ("",) if len(runs) == 1 else ("A: ", "B: ")
+    for run, letter, (colour, line) in zip(runs, letters, _LOOKS, strict=False):
+        name = f"{letter}{run.attrs['variant']}, $\\nu_s$ = {run.attrs['nu_s']:g}"
+        _draw_plane(plane, run, colour, line)
+        _draw_times(times, run, name, colour, line)
+    for axes in (plane, times):  # the regions are shaded up to the limits, which stay
+        axes.set(xlim=axes.get_xlim(), ylim=axes.get_ylim())
+    backlash = scale(runs[0]).backlash
+    shade_regions(plane, backlash, along="x")
+    shade_regions(times, backlash)
+    plane.set_title("phase plane and stroboscopic points")
+    plane.set_xlabel("$y$ in $y_{st}$")
+    plane.set_ylabel(f"{V} in $y_{{st}}$")
+    times.set_title(f"last {PERIODS_SHOWN} mesh periods; $C(t)$ rises at ▲ (A), falls at ▼ (B)")
+    times.set_xlabel("time $t/T$ in mesh periods")
+    times.set_ylabel("$y$ in $y_{st}$")
+    figure.legend(*times.get_legend_handles_labels(), loc="outside upper center", ncols=2)
+    return figure
+
+
+def _draw_plane(axes: Axes, run: xr.Dataset, colour: str, line: str) -> None:
+    axes.plot(run["y_rel"], run["v_rel"], color=colour, ls=line, lw=0.7)
+    kept = scale(run).kept_periods + 1
+    points = run["strobe_y_rel"].values[-kept:], run["strobe_v_rel"].values[-kept:]
+    axes.plot(*points, ls="none", marker="o", ms=3.5, mec=colour, mfc="white", zorder=3)
+    axes.margins(0.07)
+
+
+def _draw_times(axes: Axes, run: xr.Dataset, name: str, colour: str, line: str) -> None:
+    course = last_periods(run, min(PERIODS_SHOWN, scale(run).kept_periods))
+    axes.plot(course["period"], course["y_rel"], color=colour, ls=line, label=name)
+    for letter, where in zip("AB", switches(course), strict=True):
+        places = course["period"].values[where]
+        marker = "^" if letter == "A" else "v"
+        axes.plot(places, course["y_rel"].values[where], ls="none", marker=marker, ms=3.5, c=colour)
+    axes.margins(x=0.0, y=0.1)
+
+
+def save(figure: Figure, path: Path) -> None:
+    """Write a figure in the format that its name ends in."""
+    if path.suffix not in FORMATS:
+        raise InputError(f"--output: found {path.name}; allowed are {', '.join(FORMATS)}")
+    with replacing(path) as temporary, style.context(["default", STYLE]):
+        figure.savefig(temporary, format=path.suffix[1:])
+
+
+def read_run(path: Path) -> xr.Dataset:
+    """Read a case file that has a time course.
+
+    Raises
+    ------
+    InputError
+        If it is no such file.
+    """
+    try:
+        path.stat()
+        with xr.open_dataset(path) as file:
+            run = file.load()
+    except OSError as error:
+        raise InputError(f"{path}: cannot be read: {error.strerror or error}") from None
+    except ValueError:
+        raise InputError(f"{path}: cannot be read: it is no NetCDF file") from None
+    if "parameters" not in run.attrs or "strobe_y_rel" not in run:
+        raise InputError(f"{path}: no run of gearmesh; 'gearmesh simulate' writes one")
+    if "y_rel" not in run or not run["y_rel"].size:
+        raise InputError(f"{path}: a run without its time course; 'gearmesh simulate' writes one")
+    return run.set_coords("time")
+
+
+def differences(first: xr.Dataset, second: xr.Dataset) -> list[tuple[str, str, str, str]]:
+    """List the scalars of two runs and how far they differ, in rows of text.
+
+    Returns
+    -------
+    list of tuple
+        Name, both values and the relative difference.
+    """
+    rows = [("quantity", "A", "B", "(B − A)/A")]
+    for name, variable in first.data_vars.items():
+        if variable.ndim or name not in second or str(name).endswith("_rel"):
+            continue
+        if variable.dtype.kind not in "fiu":
+            continue
+        one, other = float(variable), float(second[name])
+        difference = (other - one) / one if one else np.nan
+        unit = variable.attrs.get("units", "1")
+        label = str(name) if unit == "1" else f"{name} in {unit}"
+        told = "0" if one == other else f"{difference:.2e}" if np.isfinite(difference) else "–"
+        rows.append((label, f"{one:.10g}", f"{other:.10g}", told))
+    return rows

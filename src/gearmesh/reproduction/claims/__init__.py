@@ -1,0 +1,48 @@
+"""The paper's claims: load them, check them, put the results together.
+
+A notebook or a rule needs these calls::
+
+    ledger = load_ledger(paths.CLAIMS)
+    evidence = Evidence(pair=study.pair, thresholds=json.loads(...), time_courses={...})
+    entries = checking.check_figure("fig2", evidence, ledger, paths.check_file("fig2"))
+    print(verdict(collect(ledger, all_check_files, paths.LEDGER)))
+
+`gearmesh.reproduction.claims.ledger` holds claims, entries and the verdict; `printed` and `fig2` to
+`fig7` hold what is measured for each claim, and `checking` puts them together. The package
+itself imports none of these: what only reads the ledger need not load the solver.
+"""
+
+from gearmesh.reproduction.claims.evidence import Evidence, NotInStudy
+from gearmesh.reproduction.claims.ledger import (
+    DEVIATES,
+    NOT_TESTABLE,
+    REPRODUCED,
+    Bound,
+    Claim,
+    Entry,
+    Verdict,
+    collect,
+    holds,
+    load_ledger,
+    read_entries,
+    verdict,
+    write_entries,
+)
+
+__all__ = [
+    "DEVIATES",
+    "NOT_TESTABLE",
+    "REPRODUCED",
+    "Bound",
+    "Claim",
+    "Entry",
+    "Evidence",
+    "NotInStudy",
+    "Verdict",
+    "collect",
+    "holds",
+    "load_ledger",
+    "read_entries",
+    "verdict",
+    "write_entries",
+]

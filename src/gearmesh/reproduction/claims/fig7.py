@@ -1,0 +1,86 @@
+"""Fig. 7: c-□ with both dampings over two mesh periods."""
+
+import math
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from gearmesh.model.stiffness import in_double_contact
+from gearmesh.reproduction.claims.evidence import Evidence
+from gearmesh.reproduction.claims.fig4 import by_quantity, corners
+from gearmesh.reproduction.claims.fig6 import LESS, MORE, NU_OF_THE_CROSSING
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+
+def _courses(evidence: Evidence) -> "dict[str, xr.Dataset]":
+    return {name: evidence.time_course(name, NU_OF_THE_CROSSING) for name in (LESS, MORE)}
+
+
+def mesh_phase(case: "xr.Dataset", evidence: Evidence) -> np.ndarray:
+    """Return the phase of the mesh period at every sample; 0 is the middle of the C_max pulse."""
+    periods = case["time"].values / float(case["mesh_period"])
+    return (periods + evidence.pair.initial_phase) % 1.0
+
+
+def friction_sense(evidence: Evidence) -> tuple[dict[str, dict[str, float]], str]:
+    """F7.1: where friction acts, and where it changes its sense."""
+    found = {}
+    for name, case in _courses(evidence).items():
+        phase, force = mesh_phase(case, evidence), case["force_friction"].values
+        double = in_double_contact(phase, evidence.pair.contact_ratio)
+        # A sample on a switch belongs to either side of it.
+        inner = double & np.roll(double, 1) & np.roll(double, -1)
+        turns = np.flatnonzero(force[1:] * force[:-1] < 0)
+        scale = np.abs(force).max()
+        found[name] = {
+            "in double contact": float(np.abs(force[inner]).max() / scale) if scale else math.nan,
+            "phase of the change": float(np.median(phase[turns])) if turns.size else math.nan,
+        }
+    return by_quantity(found), "greatest F_T in double contact, relative; phase where F_T turns"
+
+
+def shape_of_courses(evidence: Evidence) -> tuple[dict[str, dict[str, float]], str]:
+    """F7.2: y'' jumps at the switches."""
+    found = {name: corners(case, evidence) for name, case in _courses(evidence).items()}
+    return by_quantity(found), "jumps of y'', as multiples of the jump of C y"
+
+
+def lag(case: "xr.Dataset", evidence: Evidence) -> float:
+    """Return by how many degrees the first harmonic of y lags behind that of C."""
+    turning = np.exp(-2j * np.pi * mesh_phase(case, evidence))
+    return float(-np.degrees(np.angle(np.mean(case["y_rel"].values * turning)))) % 360.0
+
+
+def phase_shift(evidence: Evidence) -> tuple[dict[str, float], str]:
+    """F7.3: damping shifts y against C(t)."""
+    lags = {name: lag(case, evidence) for name, case in _courses(evidence).items()}
+    shift = (lags[MORE] - lags[LESS] + 180.0) % 360.0 - 180.0
+    shown = ", ".join(f"{name} {value:.1f}°" for name, value in lags.items())
+    return {"shift": abs(shift)}, f"degrees of the mesh period; lag of y behind C: {shown}"
+
+
+def loop_height(case: "xr.Dataset") -> float:
+    """Return the height of the loop in y, in y_st: the least rise between neighbouring extrema.
+
+    It is 0 where there are but two turning points a period, and hence no loop.
+    """
+    if float(case["turning_points_per_period"]) < 3.0:
+        return 0.0
+    return float(np.abs(np.diff(case["extremum_y_rel"].values)).min())
+
+
+def loop_depends_on_damping(evidence: Evidence) -> tuple[dict[str, float], str]:
+    """F7.4: size of the loop for both dampings."""
+    heights = {name: loop_height(case) for name, case in _courses(evidence).items()}
+    ratio = heights[MORE] / heights[LESS]
+    return {"5k to k": ratio, **heights}, "height of the loop in y at ν_s = 0.61, in y_st"
+
+
+MEASURES = {
+    "F7.1": friction_sense,
+    "F7.2": shape_of_courses,
+    "F7.3": phase_shift,
+    "F7.4": loop_depends_on_damping,
+}

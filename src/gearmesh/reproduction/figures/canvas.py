@@ -1,0 +1,175 @@
+"""What all figures share: the style, the regions, the axis in micrometres, the saved bytes."""
+
+import functools
+from collections.abc import Callable
+from pathlib import Path
+
+from matplotlib import style
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+from matplotlib.patches import Patch
+from matplotlib.ticker import FixedLocator, FuncFormatter
+
+from gearmesh.reproduction.figures import palette
+
+STYLE = "gearmesh.reproduction.figures.gearmesh"
+WIDTH = 7.2
+"""Width of a full page figure in inches."""
+
+NOT_IN_STUDY = "not in this study"
+"""What a panel says where a small study lacks what it would show."""
+
+V = "$y$′"
+A = "$y$″"
+"""y' and y'', with primes that stand closer than mathtext's."""
+
+
+def styled(draw: Callable[..., Figure]) -> Callable[..., Figure]:
+    """Make `draw` work under the figures' style file, whatever the caller's settings."""
+
+    @functools.wraps(draw)
+    def under_style(*args, **kwargs) -> Figure:
+        with style.context(["default", STYLE]):
+            return draw(*args, **kwargs)
+
+    return under_style
+
+
+def save(figure: Figure, path: Path | str) -> tuple[Path, Path]:
+    """Write `figure` as PNG and as SVG; the same figure gives the same bytes.
+
+    Parameters
+    ----------
+    figure : Figure
+        The figure.
+    path : Path or str
+        Place without suffix; missing folders are made.
+
+    Returns
+    -------
+    tuple of Path
+        The PNG and the SVG file.
+    """
+    png, svg = (Path(f"{path}{suffix}") for suffix in (".png", ".svg"))
+    png.parent.mkdir(parents=True, exist_ok=True)
+    with style.context(["default", STYLE]):
+        figure.savefig(png, metadata={"Software": None})
+        figure.set_layout_engine("none")  # the layout stands; finding it again would take as long
+        figure.savefig(svg, metadata={"Date": None, "Creator": None})
+    return png, svg
+
+
+def note(axes: Axes, text: str) -> None:
+    """Say in an empty panel why it is empty."""
+    axes.text(
+        0.5, 0.5, text, ha="center", va="center", color=palette.GREY, transform=axes.transAxes
+    )
+
+
+def empty() -> Figure:
+    """Return a figure that says that the study lacks what it would show."""
+    figure = Figure(figsize=(WIDTH, 1.2))
+    figure.text(0.5, 0.5, NOT_IN_STUDY, ha="center", va="center", color=palette.GREY)
+    return figure
+
+
+def shade_regions(axes: Axes, backlash: float, along: str = "y") -> None:
+    """Colour contact loss yellow and inverse mesh red behind what `axes` shows.
+
+    Parameters
+    ----------
+    axes : Axes
+        Axes whose limits are final.
+    backlash : float
+        s in units of the axis.
+    along : {"y", "x"}
+        The axis that carries the relative motion.
+    """
+    span, line, limits = (
+        (axes.axhspan, axes.axhline, axes.get_ylim())
+        if along == "y"
+        else (axes.axvspan, axes.axvline, axes.get_xlim())
+    )
+    low = limits[0]
+    if low < 0.0:
+        span(max(low, -backlash), 0.0, color=palette.CONTACT_LOSS, lw=0, zorder=0)
+        line(0.0, color=palette.GREY, lw=0.5, zorder=0.5)
+    if low < -backlash:
+        span(low, -backlash, color=palette.INVERSE_MESH, lw=0, zorder=0)
+        line(-backlash, color=palette.GREY, lw=0.5, zorder=0.5)
+
+
+def region_handles(inverse: bool = True) -> list[Patch]:
+    """Return legend entries of the region colours."""
+    regions = [
+        (palette.NORMAL_MESH, "normal mesh, $y\\geq 0$"),
+        (palette.CONTACT_LOSS, "contact loss, $-s<y<0$"),
+        (palette.INVERSE_MESH, "inverse mesh, $y\\leq -s$"),
+    ]
+    return [
+        Patch(facecolor=colour, edgecolor=palette.GREY, lw=0.5, label=label)
+        for colour, label in regions[: 3 if inverse else 2]
+    ]
+
+
+def course_handle(name: str) -> Line2D:
+    """Return the legend entry of the course `name` of Tab. 1."""
+    course = palette.COURSES[name]
+    return Line2D(
+        [],
+        [],
+        ls="none",
+        label=course.meaning,
+        **marker_look(course, size=max(course.size, 3.6)),
+    )
+
+
+def marker_look(course: palette.Course, size: float | None = None) -> dict:
+    """Return the marker settings of `course` for `Axes.plot`."""
+    return {
+        "marker": course.marker,
+        "ms": size or course.size,
+        "mew": 0.7 if course.open else 0.0,
+        "mec": course.colour,
+        "mfc": "none" if course.open else course.colour,
+    }
+
+
+def micrometre_axis(axes: Axes, static_deflection: float, label: bool = True) -> Axes:
+    """Give `axes`, whose ordinate counts static deflections, a right ordinate in micrometres.
+
+    Parameters
+    ----------
+    axes : Axes
+        Axes whose scale and limits are final.
+    static_deflection : float
+        y_st in mm.
+    label : bool
+        Whether the new ordinate is named.
+
+    Returns
+    -------
+    Axes
+        The axes of the right ordinate.
+    """
+    right = axes.twinx()
+    axes.tick_params(axis="y", which="both", right=False)
+    micrometres = 1e3 * static_deflection
+    scale = axes.yaxis.get_transform()
+    if axes.get_yscale() == "symlog":
+        right.set_yscale(
+            "symlog",
+            linthresh=scale.linthresh * micrometres,
+            linscale=scale.linscale,
+        )
+        right.yaxis.set_major_locator(FixedLocator(micrometres * axes.get_yticks()))
+        right.yaxis.set_major_formatter(
+            FuncFormatter(lambda tick, _: f"{tick:g}".replace("-", "−"))
+        )
+        right.minorticks_off()
+    right.set_ylim(*(limit * micrometres for limit in axes.get_ylim()))
+    right.tick_params(axis="y", which="both", left=False, right=True)
+    if label:
+        right.set_ylabel("µm")
+    return right

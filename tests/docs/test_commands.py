@@ -1,0 +1,132 @@
+"""Every command and every Python block that README and docs print, run as printed.
+
+The blocks of a page run one after the other in a copy of the project: shell blocks with bash,
+Python blocks in one process, as a reader would type them into one session. A YAML block that
+begins with the name of a file becomes that file. Code cells of the site are run by `make docs`.
+"""
+
+import os
+import re
+import subprocess
+import sys
+from pathlib import Path
+from typing import NamedTuple
+
+import pytest
+from project import ROOT, Project
+
+PAGES = sorted(
+    path.relative_to(ROOT).as_posix()
+    for path in (ROOT / "README.md", ROOT / "CONTRIBUTING.md", *(ROOT / "docs").rglob("*.md"))
+    if "_build" not in path.parts
+)
+FENCE = re.compile(
+    r"^(?P<indent> *)```(?P<kind>[^\n`]*)\n(?P<code>.*?)^(?P=indent)```", re.M | re.S
+)
+SHELL = ("", "sh", "bash", "console")
+SHOWN = ("text", "yaml")
+"""Kinds that are only read: files, output, and code that belongs into a file."""
+
+ELSEWHERE = {
+    "make reproduce": "tests/workflow/test_workflow.py runs the same targets on a small study",
+    "make test": "runs this test",
+    "make test-fast": "a part of make test",
+    "make lint": ".ci/run runs it",
+    "make docs": ".ci/run runs it",
+    "make bench": "tests/solvers/test_peers.py runs the peers",
+    "make verify": "minutes; tests/solvers/test_peers.py compares with heyoka",
+    "make identify": "tests/identification/test_identification_runs.py runs it on a small design",
+    ".venv/bin/pre-commit install": "changes the repository's hooks",
+    ".venv/bin/snakemake": "as make reproduce",
+    ".venv/bin/snakemake --profile profiles/slurm": "tests/workflow/test_slurm.py runs it",
+    ".venv/bin/snakemake --report report.html": "needs the results of make reproduce",
+}
+"""Commands that do not run here, each with what runs it instead."""
+
+
+class Block(NamedTuple):
+    """A fenced block of a page."""
+
+    kind: str
+    code: str
+
+
+def blocks(page: str) -> list[Block]:
+    text = (ROOT / page).read_text(encoding="utf-8")
+    found = []
+    for match in FENCE.finditer(text):
+        lines = match["code"].splitlines()
+        code = "\n".join(line.removeprefix(match["indent"]) for line in lines)
+        found.append(Block(match["kind"].strip(), code))
+    return found
+
+
+def commands(code: str) -> list[str]:
+    """Return the commands of a shell block: prompts, comments and output aside."""
+    joined = code.replace("\\\n", " ")
+    lines = [re.sub(r"\s+# .*", "", line).strip() for line in joined.splitlines()]
+    if any(line.startswith("$ ") for line in lines):
+        lines = [line[2:] for line in lines if line.startswith("$ ")]
+    return [" ".join(line.split()) for line in lines if line and not line.startswith("#")]
+
+
+def here(command: str) -> bool:
+    """Return whether a command runs here; `make X CORES=2` counts as `make X`."""
+    plain = " ".join(word for word in command.split() if not re.fullmatch(r"[A-Z]+=\S+", word))
+    return plain not in ELSEWHERE
+
+
+def run(arguments: list[str], project: Project, text: str) -> None:
+    path = f"{Path(sys.executable).parent}{os.pathsep}{os.environ['PATH']}"
+    finished = subprocess.run(
+        arguments,
+        cwd=project.folder,
+        env=project.environment | {"PATH": path, "MPLBACKEND": "Agg"},
+        stdout=subprocess.PIPE,
+        stderr=subprocess.STDOUT,
+        text=True,
+        timeout=280,
+        check=False,
+    )
+    assert finished.returncode == 0, f"{text}\n\n{finished.stdout}"
+
+
+def needs_running(page: str) -> bool:
+    return any(
+        block.kind == "python" or (block.kind in SHELL and any(map(here, commands(block.code))))
+        for block in blocks(page)
+    )
+
+
+@pytest.mark.parametrize("page", filter(needs_running, PAGES))
+def test_what_a_page_prints_works_as_printed(page: str, tmp_path: Path) -> None:
+    project = Project.create(tmp_path / "project", "config/paper.yaml")
+    project.path(".venv").symlink_to(sys.prefix)
+    python = []
+    for block in blocks(page):
+        if block.kind == "yaml" and (name := re.match(r"# (\S+\.yaml)\n", block.code)):
+            project.path(name[1]).write_text(block.code, encoding="utf-8")
+        elif block.kind in SHELL:
+            for command in filter(here, commands(block.code)):
+                run(["bash", "-c", command], project, f"{page}: {command}")
+        elif block.kind == "python":
+            python.append(block.code)
+    if python:
+        run([sys.executable, "-c", "\n".join(python)], project, f"{page}: its Python blocks")
+
+
+@pytest.mark.parametrize("page", PAGES)
+def test_each_block_says_what_it_is(page: str) -> None:
+    kinds = {block.kind for block in blocks(page) if not block.kind.startswith("{")}
+    assert kinds <= {*SHELL, *SHOWN, "python"}
+
+
+def test_what_runs_elsewhere_is_printed_somewhere() -> None:
+    printed = {
+        " ".join(command.split())
+        for page in PAGES
+        for block in blocks(page)
+        if block.kind in SHELL
+        for command in commands(block.code)
+    }
+    assert [command for command in ELSEWHERE if command not in printed] == []

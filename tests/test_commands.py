@@ -1,0 +1,215 @@
+"""The command as people run it: exit statuses, one line for bad input, no traceback."""
+
+import os
+import shutil
+import subprocess
+import sys
+
+import pytest
+import xarray as xr
+
+from gearmesh import __version__
+from gearmesh.model.damping import VARIANTS
+
+
+@pytest.fixture
+def gearmesh(root):
+    """Return a function that runs the command in the root of the project."""
+
+    def run(*arguments, cwd=root, **environment):
+        return subprocess.run(
+            [sys.executable, "-m", "gearmesh", *map(str, arguments)],
+            cwd=cwd,
+            env=os.environ | environment,
+            capture_output=True,
+            text=True,
+            encoding="utf-8",
+            timeout=120,
+        )
+
+    return run
+
+
+def refused(run):
+    """Check that a run ended as bad input does, and return what it said."""
+    assert run.returncode == 2
+    assert run.stdout == ""
+    [line] = run.stderr.splitlines()
+    assert line.startswith("gearmesh: error: ")
+    return line
+
+
+def test_help_and_version(gearmesh):
+    assert "simulate" in gearmesh("--help").stdout
+    assert "--set" in gearmesh("simulate", "--help").stdout
+    assert gearmesh("--version").stdout == f"gearmesh {__version__}\n"
+
+
+def test_help_imports_nothing_heavy(root):
+    code = (
+        "import sys, contextlib, gearmesh.commands.main\n"
+        "with contextlib.suppress(SystemExit): gearmesh.commands.main.main(['--help'])\n"
+        "sys.exit(bool({'numba', 'numpy', 'pint', 'pydantic'} & set(sys.modules)))"
+    )
+    run = subprocess.run([sys.executable, "-c", code], cwd=root, capture_output=True, timeout=60)
+    assert run.returncode == 0
+
+
+def test_variants_is_table_1(gearmesh):
+    lines = gearmesh("variants").stdout.splitlines()
+    table = {line.split()[0]: line.split()[1:8] for line in lines[1:23]}
+    assert set(table) == set(VARIANTS)
+    assert table["h-lubricant"] == ["•", "0", "0", "0", "0", "×", "×"]
+    explained = "\n".join(lines[23:])
+    assert all(word in explained for word in ("linear", "quadratic", "cubic", "-5x"))
+
+
+@pytest.mark.parametrize("command", ["variants", "parameters"])
+def test_tables_fit_100_columns(gearmesh, command):
+    assert max(map(len, gearmesh(command).stdout.splitlines())) <= 100
+
+
+def test_parameters_lists_values_units_and_kinds(gearmesh):
+    run = gearmesh("parameters", "--set", "backlash=55 um")
+    lines = {line.split()[0]: line.split() for line in run.stdout.splitlines()}
+    assert lines["reduced_mass"][1:5] == ["m_red", "3.123", "kg", "printed"]
+    assert lines["backlash"][1:5] == ["s", "0.055", "mm", "stated"]
+    assert lines["damping_ratio"][3:5] == ["1", "computed"]
+
+
+def test_output_survives_a_terminal_without_greek(gearmesh):
+    run = gearmesh("parameters", PYTHONIOENCODING="ascii")
+    assert run.returncode == 0
+    assert "teeth" in run.stdout
+
+
+def test_the_paper_s_pair_is_there_in_any_folder(gearmesh, tmp_path):
+    assert gearmesh("parameters", cwd=tmp_path).stdout == gearmesh("parameters").stdout
+
+
+SIMULATE = ("simulate", "--variant", "c-lubricant", "--nu", "0.66")
+
+
+def test_simulate_writes_a_case_with_its_time_course(gearmesh, tmp_path):
+    file = tmp_path / "case.nc"
+    run = gearmesh(*SIMULATE, "--set", "backlash=41 um", "-o", file)
+    assert (run.returncode, run.stderr) == (0, "")
+    assert "c-lubricant at nu_s = 0.66" in run.stdout
+    with xr.open_dataset(file) as case:
+        assert case.attrs["variant"] == "c-lubricant"
+        assert case.attrs["nu_s"] == 0.66
+        assert '"backlash":0.041' in case.attrs["parameters"]
+        assert case.sizes["boundary"] == 106
+        assert case["y"].size == 21 * 256
+        assert float(case["y_max"]) >= float(case["y"].max())
+    assert os.listdir(tmp_path) == ["case.nc"]
+
+
+def test_simulate_gives_the_same_bytes_again_and_says_what_it_replaces(gearmesh, tmp_path):
+    file = tmp_path / "case.nc"
+    assert gearmesh(*SIMULATE, "-o", file).returncode == 0
+    first = file.read_bytes()
+    assert "case.nc (replaced): " in gearmesh(*SIMULATE, "-o", file).stdout
+    assert file.read_bytes() == first
+
+
+def test_an_output_that_is_no_run_is_never_overwritten(gearmesh, tmp_path):
+    file = tmp_path / "notes.nc"
+    file.write_text("what was there before")
+    assert "is no NetCDF file" in refused(gearmesh(*SIMULATE, "-o", file))
+    assert file.read_text() == "what was there before"
+
+
+def test_a_sensitive_run_says_so(gearmesh, tmp_path):
+    run = gearmesh(
+        *("simulate", "--variant", "a-conservative", "--nu", "0.65", "-o", tmp_path / "a.nc"),
+    )
+    assert "sensitive: this motion amplifies small errors" in run.stdout
+
+
+def test_settings_of_a_run_from_the_command_line(gearmesh, tmp_path):
+    run = gearmesh(
+        *(*SIMULATE, "-o", tmp_path / "a.nc"),
+        *("--revolutions", "7", "--kept", "2", "--start", "12 um", "0.1"),
+    )
+    assert (run.returncode, run.stderr) == (0, "")
+    with xr.open_dataset(tmp_path / "a.nc") as case:
+        assert case.sizes["boundary"] == 7 * 21 + 1
+        assert float(case["strobe_y"][0]) == pytest.approx(0.012)
+        assert float(case["strobe_v_rel"][0]) == pytest.approx(0.1)
+
+
+def test_sweep_writes_one_dataset(gearmesh, tmp_path):
+    file = tmp_path / "sweep.nc"
+    run = gearmesh(
+        *("sweep", "--variant", "c-material", "b-lubricant", "--nu", "0.6:0.65:0.01"),
+        *("--direction", "down", "--revolutions", "2", "-o", file),
+    )
+    assert (run.returncode, run.stderr) == (0, "")
+    with xr.open_dataset(file) as found:
+        assert dict(found["y_max"].sizes) == {"variant": 2, "nu": 6}
+        assert found["nu"].values.tolist() == [0.6, 0.61, 0.62, 0.63, 0.64, 0.65]
+
+
+@pytest.fixture(scope="module")
+def two_runs(root, tmp_path_factory):
+    folder = tmp_path_factory.mktemp("runs")
+    for name, nu in (("a.nc", "0.78"), ("b.nc", "0.80")):
+        command = ["simulate", "--variant", "c-lubricant", "--nu", nu, "-o", folder / name]
+        subprocess.run([sys.executable, "-m", "gearmesh", *command], check=True, timeout=120)
+    return folder
+
+
+@pytest.mark.parametrize(("suffix", "start"), [("png", b"\x89PNG"), ("svg", b"<?xml")])
+def test_plot_draws_a_run(gearmesh, two_runs, tmp_path, suffix, start):
+    picture = tmp_path / f"picture.{suffix}"
+    assert gearmesh("plot", two_runs / "a.nc", "-o", picture).returncode == 0
+    assert picture.read_bytes().startswith(start)
+
+
+def test_compare_lists_what_differs(gearmesh, two_runs, tmp_path):
+    run = gearmesh("compare", two_runs / "a.nc", two_runs / "b.nc", cwd=tmp_path)
+    assert run.returncode == 0, run.stderr
+    assert "nu_s: A 0.78, B 0.8" in run.stdout
+    rows = {line.split()[0]: line.split() for line in run.stdout.splitlines() if line}
+    with xr.open_dataset(two_runs / "b.nc") as second:
+        assert float(rows["y_max"][4]) == pytest.approx(float(second["y_max"]), rel=1e-9)
+    assert (tmp_path / "a-b.png").exists()
+
+
+@pytest.mark.parametrize(
+    ("arguments", "expected"),
+    [
+        ((), "COMMAND"),
+        (("simulat",), "simulat"),
+        (("simulate", "--nu", "1", "-o", "x.nc"), "--variant"),
+        (("simulate", "--varient", "a", "--nu", "1", "-o", "x.nc"), "did you mean '--variant'?"),
+        (("simulate", "--variant", "c-lubicant", "--nu", "1", "-o", "x.nc"), "'c-lubricant'"),
+        (("simulate", "--variant", "c-both", "--nu", "one", "-o", "x.nc"), "--nu: found 'one'"),
+        (("simulate", "--variant", "c-both", "--nu", "0", "-o", "x.nc"), "allowed is 0.01 to 10"),
+        (("simulate", "--variant", "c-both", "--nu", "nan", "-o", "x.nc"), "--nu: found 'nan'"),
+        (("simulate", "--variant", "c-both", "--nu", "0,66", "-o", "x.nc"), "use a decimal point"),
+        ((*SIMULATE, "-o", "missing/x.nc"), "there is no folder missing"),
+        ((*SIMULATE, "-o", "."), "is a folder"),
+        ((*SIMULATE, "-o", "x.csv"), "ends in .nc"),
+        ((*SIMULATE, "-o", "x.nc", "--set", "backlash=40"), "unit missing"),
+        ((*SIMULATE, "-o", "x.nc", "--set", "nu=0.7"), "nu: no such parameter"),
+        ((*SIMULATE, "-o", "x.nc", "--set", "damping_ratio=1"), "it is computed as"),
+        ((*SIMULATE, "-o", "x.nc", "--set", "assumed.backlash=4 um"), "did you mean 'backlash'?"),
+        ((*SIMULATE, "-o", "x.nc", "--config", "none.yaml"), "none.yaml: cannot be read"),
+        ((*SIMULATE, "-o", "x.nc", "--kept", "9"), "kept_revolutions"),
+        ((*SIMULATE, "-o", "x.nc", "--revolutions", "two"), "--revolutions: found 'two'"),
+        ((*SIMULATE, "-o", "x.nc", "--start", "1 kg", "0"), "1 kg"),
+        (("sweep", "--variant", "b-both", "--nu", "1:0.9:0.1", "-o", "x.nc"), "START <= STOP"),
+        (("sweep", "--variant", "b-both", "--nu", "0.9:1:0", "-o", "x.nc"), "positive STEP"),
+        (("plot", "none.nc"), "none.nc: cannot be read: No such file"),
+        (("plot", "config/paper.yaml"), "no NetCDF file"),
+        (("parameters", "--config", "."), "cannot be read"),
+        (("parameters", "--set", "backlsh=40 um"), "did you mean 'backlash'?"),
+        (("parameters", "--set", "line\nbreak"), "NAME=VALUE"),
+    ],
+)
+def test_bad_input_is_one_line_and_writes_nothing(gearmesh, root, tmp_path, arguments, expected):
+    shutil.copytree(root / "config", tmp_path / "config")
+    assert expected in refused(gearmesh(*arguments, cwd=tmp_path))
+    assert os.listdir(tmp_path) == ["config"]
