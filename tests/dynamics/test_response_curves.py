@@ -6,7 +6,7 @@ from curves import Drawn, heights
 
 from gearmesh.dynamics import response_curves as curves
 from gearmesh.dynamics.response_curves import WIDTH, Jump, ResponseCurve
-from gearmesh.model.damping import variant
+from gearmesh.model.variants import variant
 from gearmesh.solvers.response import MAXIMUM, MINIMUM, Response
 from gearmesh.solvers.simulation import simulate
 

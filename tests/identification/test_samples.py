@@ -12,7 +12,7 @@ from gearmesh.dynamics.response_curves import WIDTH
 from gearmesh.identification import design, layout, store, survey, table
 from gearmesh.identification.curves import ACCURACY, SampledCurve, scan_all
 from gearmesh.identification.settings import KINDS, load_settings
-from gearmesh.model.damping import variant
+from gearmesh.model.variants import variant
 from gearmesh.reproduction import thresholds
 from gearmesh.solvers.simulation import simulate
 

@@ -9,7 +9,7 @@ from curves import Drawn
 
 from gearmesh.data import paths
 from gearmesh.dynamics.response_curves import JUMP_WIDTH, WIDTH, FailedRun
-from gearmesh.model.damping import variant
+from gearmesh.model.variants import variant
 from gearmesh.reproduction import thresholds
 from gearmesh.reproduction.claims import NOT_TESTABLE, Evidence, load_ledger
 from gearmesh.reproduction.claims.checking import check_figure

@@ -7,7 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from gearmesh.errors import InputError
-from gearmesh.model.damping import VARIANTS, variant
+from gearmesh.model.variants import VARIANTS, variant
 from gearmesh.solvers.simulation import simulate
 
 EACH = ("damping_1", "damping_2", "damping_3", "damping_1m", "damping_2m", "damping_3m")
