@@ -11,7 +11,7 @@ from project import Project
 from gearmesh.data import paths
 from gearmesh.identification import design, layout, store, survey, table
 from gearmesh.identification.settings import KINDS, load_settings
-from gearmesh.model.damping import variant
+from gearmesh.model.variants import variant
 from gearmesh.reproduction import thresholds
 from gearmesh.solvers.simulation import simulate
 

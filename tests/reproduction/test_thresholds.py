@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 
 from gearmesh.data import paths
 from gearmesh.dynamics.refinement import refine_change, refine_peak, refine_step
-from gearmesh.model.damping import variant
+from gearmesh.model.variants import variant
 from gearmesh.reproduction import thresholds
 from gearmesh.solvers.response import MAXIMUM, MINIMUM, Response
 from gearmesh.solvers.simulation import simulate

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 from gearmesh.data import paths
 from gearmesh.errors import InputError
-from gearmesh.model.damping import VARIANTS
+from gearmesh.model.variants import VARIANTS
 from gearmesh.study.cases import Study
 from gearmesh.study.frequencies import read_nu
 from gearmesh.study.loading import load_study

@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from gearmesh.errors import InputError
-from gearmesh.model.damping import VARIANTS, variant
+from gearmesh.model.variants import VARIANTS, variant
 from gearmesh.study.pair import DERIVATIONS, KG_PER_N_S2_MM, KINDS, Parameters, rows
 
 NU_OF_THE_TEXT = 0.66

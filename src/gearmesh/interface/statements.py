@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from gearmesh.errors import InputError
-from gearmesh.model.damping import Variant, variant
+from gearmesh.model.variants import Variant, variant
 from gearmesh.study.frequencies import read_nu
 from gearmesh.study.loading import load_study
 from gearmesh.study.pair import Pair

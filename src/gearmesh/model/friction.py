@@ -41,26 +41,34 @@ they cancel only in the sum coordinate phi_3 + phi_2.
 """
 
 import math
+from typing import NamedTuple
 
-from gearmesh.model.stiffness import in_double_contact
+from gearmesh.model.stiffness import PITCH_PHASE, in_double_contact
 
 
-def pairs_in_contact(phase: float, contact_ratio: float) -> list[tuple[float, float]]:
-    """Return (gamma, sigma / p_b) of each pair of teeth in contact at the mesh phase `phase`.
+class Pair(NamedTuple):
+    """A pair of teeth in contact: its gamma, and sigma in base pitches from the pitch point."""
+
+    gamma: float
+    sigma: float
+
+
+def pairs_in_contact(phase: float, contact_ratio: float) -> list[Pair]:
+    """Return the pairs of teeth in contact at the mesh phase `phase`.
 
     gamma runs through 0.5, 1, 0, -1, -0.5 along the path of a pair: half the load in double
     contact, and a change of sign at the pitch point.
     """
     if in_double_contact(phase, contact_ratio):
         since_middle = phase - round(phase)
-        return [(0.5, since_middle - 0.5), (-0.5, since_middle + 0.5)]
-    sigma = phase % 1.0 - 0.5
-    return [(0.0 if sigma == 0.0 else -math.copysign(1.0, sigma), sigma)]
+        return [Pair(0.5, since_middle - PITCH_PHASE), Pair(-0.5, since_middle + PITCH_PHASE)]
+    sigma = phase % 1.0 - PITCH_PHASE
+    return [Pair(0.0 if sigma == 0.0 else -math.copysign(1.0, sigma), sigma)]
 
 
 def mesh_gamma(phase: float, contact_ratio: float) -> float:
     """Return gamma summed over the pairs in contact: 0 for two pairs, +1 then -1 for one."""
-    return sum(gamma for gamma, _ in pairs_in_contact(phase, contact_ratio))
+    return sum(pair.gamma for pair in pairs_in_contact(phase, contact_ratio))
 
 
 def arms(sigma: float, pressure_angle: float, teeth: int) -> tuple[float, float]:
@@ -95,3 +103,15 @@ def friction_force(
         The two signs of eq. (6).
     """
     return -coefficient * elastic_force * gamma * run_out_sign * slip_sign
+
+
+def holding_force(pull: float) -> float:
+    """Return the F_T on wheel 3 that keeps z_3' - z_2' constant while the flanks stick.
+
+    Parameters
+    ----------
+    pull : float
+        Force of the bearings against z_3 - z_2: c_b (z_3 - z_2) + b_b (z_3' - z_2'). Each of the
+        equal bodies takes half of it.
+    """
+    return 0.5 * pull

@@ -12,7 +12,7 @@ import numpy as np
 from gearmesh.dynamics import response_curves as curves
 from gearmesh.dynamics.refinement import Batch
 from gearmesh.dynamics.response_curves import FailedRun, Jump, ResponseCurve
-from gearmesh.model.damping import variant
+from gearmesh.model.variants import variant
 from gearmesh.solvers.response import MAXIMUM, MINIMUM, Response
 from gearmesh.study.pair import Pair
 

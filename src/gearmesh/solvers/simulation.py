@@ -8,7 +8,7 @@ deviation and the truncated Fourier series of the stiffness.
 
 from collections.abc import Sequence
 
-from gearmesh.model.motion import Problem
+from gearmesh.model.problem import Problem
 from gearmesh.solvers.reduced import runs as reduced
 from gearmesh.solvers.response import Response
 

@@ -8,13 +8,15 @@ import hashlib
 import json
 import math
 from collections.abc import Iterable, Mapping
+from dataclasses import replace
 from typing import Any, NamedTuple, Self
 
 from pydantic import PrivateAttr, model_validator
 
 from gearmesh.model import stiffness
-from gearmesh.model.damping import Variant
-from gearmesh.model.motion import Problem
+from gearmesh.model.motion import state_at
+from gearmesh.model.problem import Problem
+from gearmesh.model.variants import Variant
 from gearmesh.study import units
 from gearmesh.study.provenance import DEFAULT, SETTING, STATED, Statement
 from gearmesh.study.schema import Section, quantity, validate
@@ -314,7 +316,7 @@ class Pair(Section):
         """
         y_st, c_s = self.static_deflection, self.stiffness_mean
         eccentricity_3, eccentricity_2 = self.eccentricity
-        return Problem(
+        problem = Problem(
             nu=nu,
             contact_ratio=self.contact_ratio,
             stiffness_max=self.mesh_stiffness_max / c_s,
@@ -342,17 +344,11 @@ class Pair(Section):
             initial_phase=self.initial_phase,
             revolutions=self.revolutions,
             kept_revolutions=self.kept_revolutions,
-            initial_state=self._initial_state(),
         )
-
-    def _initial_state(self) -> tuple[float, float, float, float] | None:
-        """Return u, u', b, b' at the start; None for rest in static equilibrium."""
         if self.initial_displacement is None and self.initial_velocity == 0.0:
-            return None
-        y_st = self.static_deflection
+            return problem  # at rest in static equilibrium
         y = 1.0 if self.initial_displacement is None else self.initial_displacement / y_st
-        bearing = -2.0 / (self.bearing_stiffness / self.stiffness_mean)
-        return y - bearing, self.initial_velocity / y_st, bearing, 0.0
+        return replace(problem, initial_state=state_at(problem, y, self.initial_velocity / y_st))
 
     def _damping_law(
         self,
