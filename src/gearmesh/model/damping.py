@@ -2,10 +2,10 @@
 
 from collections.abc import Sequence
 
-from numpy.typing import ArrayLike
+from gearmesh.model.contact import Number
 
 
-def damping_force(velocity: ArrayLike, law: Sequence[float]) -> ArrayLike:
+def damping_force(velocity: Number, law: Sequence[float]) -> Number:
     """Return the damping force of eq. (7), k1 v + k2 abs(v) v + k3 v^3.
 
     Parameters

@@ -7,7 +7,6 @@ have.
 """
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 PITCH_PHASE = 0.5
 """Mesh phase at which a single pair of equal wheels touches at the pitch point."""
@@ -24,7 +23,7 @@ def switch_phases(contact_ratio: float) -> tuple[float, float]:
     return half, 1.0 - half
 
 
-def in_double_contact(phase: ArrayLike, contact_ratio: float) -> np.ndarray:
+def in_double_contact(phase: float | np.ndarray, contact_ratio: float) -> np.ndarray:
     """Return whether two pairs of teeth carry at `phase`, a float or an array."""
     return np.abs(phase - np.round(phase)) < 0.5 * duty(contact_ratio)
 
@@ -35,7 +34,7 @@ def mean(contact_ratio: float, maximum: float, minimum: float) -> float:
 
 
 def rectangular(
-    phase: ArrayLike, contact_ratio: float, maximum: float, minimum: float
+    phase: float | np.ndarray, contact_ratio: float, maximum: float, minimum: float
 ) -> np.ndarray:
     """Return the stiffness at `phase`, a float or an array: the sum of eq. (4) in closed form.
 
@@ -55,7 +54,7 @@ def fourier_amplitudes(
 
 
 def fourier(
-    phase: ArrayLike, contact_ratio: float, maximum: float, minimum: float, terms: int
+    phase: float | np.ndarray, contact_ratio: float, maximum: float, minimum: float, terms: int
 ) -> np.ndarray:
     """Return the stiffness at `phase`, a float or an array, by eq. (4) cut after `terms` terms."""
     n = np.arange(1, terms + 1)

@@ -4,6 +4,7 @@ import contextlib
 from collections.abc import Callable, Iterator
 from functools import lru_cache, partial, wraps
 from pathlib import Path
+from typing import Any
 
 from numba import config, njit
 
@@ -13,13 +14,13 @@ from gearmesh.solvers import sources
 try:
     import fcntl
 except ImportError:  # Windows has no such locks
-    fcntl = None
+    fcntl = None  # type: ignore[assignment]
 
 inner = partial(njit, no_cpython_wrapper=True, no_cfunc_wrapper=True)
 """As `njit`, for functions that compiled code alone calls: a quarter less to compile."""
 
 
-def persistent(build: Callable[[str, bool], Callable]) -> Callable:
+def persistent(build: Callable[[str, bool], Any]) -> Callable[..., Any]:
     """Return the function that `build` compiles, compiled at its first call and kept on disk.
 
     numba looks for changes only in the file of the function that it keeps, and not in those of
@@ -40,8 +41,8 @@ def persistent(build: Callable[[str, bool], Callable]) -> Callable:
     """
 
     @lru_cache
-    def compiled(cache: bool) -> Callable:
-        if config.DISABLE_JIT:
+    def compiled(cache: bool) -> Any:
+        if config.DISABLE_JIT:  # type: ignore[attr-defined]
             raise InputError(
                 "NUMBA_DISABLE_JIT: found it set; allowed is unset or 0, because the solvers "
                 "run as compiled code only"

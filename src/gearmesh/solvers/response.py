@@ -7,6 +7,7 @@ tau_s = Omega_s t counted from the start of the run, forces in the static mesh f
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from typing import Any
 
 import numpy as np
 
@@ -147,13 +148,13 @@ class Response:
 class Companion:
     """What a companion run leaves: its summary (`MEASURED`) and its strobes."""
 
-    summary: Mapping[str, float]
+    summary: Mapping[str, Any]
     strobes: np.ndarray
 
 
 def assemble(
     problem: Problem,
-    summary: Mapping[str, float],
+    summary: Mapping[str, Any],
     strobes: np.ndarray,
     extrema: np.ndarray,
     final_state: State,
@@ -219,7 +220,7 @@ def _measure(
 
 def _estimate(
     response: Response,
-    summary: Mapping[str, float],
+    summary: Mapping[str, Any],
     strobes: np.ndarray,
     companion: Companion,
     bound: float,
