@@ -23,6 +23,7 @@ STATUSES = ("complete", "too many steps", "too many events", "diverged")
 """Outcomes of a passage, by their number in `gearmesh.solvers.reduced.variational`."""
 
 _EVENTS_PER_PERIOD = 64
+_NO_SAMPLES = np.empty((0, 4))
 # u = y - b in the coordinates (u, u', b, b') of `Problem.initial_state`.
 _TO_SUM = np.array([[1.0, 0, 1, 0], [0, 1, 0, 1], [0, 0, 1, 0], [0, 0, 0, 1]])
 _FROM_SUM = np.array([[1.0, 0, -1, 0], [0, 1, 0, -1], [0, 0, 1, 0], [0, 0, 0, 1]])
@@ -32,7 +33,7 @@ def _build_propagation(sources: str, cache: bool) -> Callable[..., tuple[int, in
     @njit(cache=cache, nogil=True)
     def compiled(*arguments):  # type: ignore[no-untyped-def]
         sources  # noqa: B018 (see persistent)
-        return variational.propagate(*arguments)  # type: ignore[call-arg]
+        return variational.propagate(*arguments)
 
     return compiled
 
@@ -97,20 +98,57 @@ def passage(
     longest_angle : float
         Bound of a step times the highest natural frequency.
     """
-    bearing = math.sqrt(problem.bearing_stiffness / problem.body_mass)
-    two_mu = 2.0 / problem.body_mass
-    highest = math.sqrt(problem.stiffness_max * (1.0 + two_mu) + bearing**2)
-    bearings = np.array([two_mu, bearing**2, 2.0 * problem.bearing_damping_ratio * bearing])
-    end = _TO_SUM @ np.asarray(state, float)
-    jacobian = _TO_SUM.copy()
+    segments = segments_of(problem)
     events = np.empty((_EVENTS_PER_PERIOD * periods, variational.EVENT_SIZE))
     samples = np.empty((samples_per_period * periods, 4))
-    outcome, n_events, damping, least_force = _propagate(
-        segments_of(problem),
+    visits = periods * len(segments)
+    (outcome, n_events, damping, least_force), end, jacobian = _move(
+        problem, segments, visits, state, events, longest_angle, samples, samples_per_period
+    )
+    two_mu, _, bearing = _bearings(problem)
+    return Passage(
+        STATUSES[outcome],
+        end,
+        jacobian,
+        events[:n_events],
+        damping,
+        -(1.0 + two_mu) * damping - bearing * periods * problem.period,
+        least_force,
+        samples,
+    )
+
+
+def advance(problem: Problem, state: np.ndarray, share: float) -> np.ndarray:
+    """Return the state that the motion reaches after a share of a mesh period, 0 to 1."""
+    segments = segments_of(problem)
+    ends = np.cumsum(segments[:, 0])
+    begins = ends - segments[:, 0]
+    segments[:, 0] = np.minimum(ends, share * problem.period) - begins
+    segments = segments[segments[:, 0] > 0.0]
+    events = np.empty((_EVENTS_PER_PERIOD, variational.EVENT_SIZE))
+    return _move(problem, segments, len(segments), state, events)[1]
+
+
+def _move(
+    problem: Problem,
+    segments: np.ndarray,
+    visits: int,
+    state: np.ndarray,
+    events: np.ndarray,
+    longest_angle: float = LONGEST_ANGLE,
+    samples: np.ndarray = _NO_SAMPLES,
+    samples_per_period: int = 0,
+) -> tuple[tuple[int, int, float, float], np.ndarray, np.ndarray]:
+    """Return what the compiled code returns, the state at the end and its Jacobian."""
+    bearings = _bearings(problem)
+    highest = math.sqrt(problem.stiffness_max * (1.0 + bearings[0]) + bearings[1])
+    end, jacobian = _TO_SUM @ np.asarray(state, float), _TO_SUM.copy()
+    told = _propagate(
+        segments,
         np.array([problem.lubricant, problem.material]),
         problem.backlash,
         bearings,
-        periods,
+        visits,
         longest_angle / highest,
         TOLERANCE,
         end,
@@ -119,16 +157,14 @@ def passage(
         samples,
         samples_per_period,
     )
-    return Passage(
-        STATUSES[outcome],
-        _FROM_SUM @ end,
-        _FROM_SUM @ jacobian,
-        events[:n_events],
-        damping,
-        -(1.0 + two_mu) * damping - bearings[2] * periods * problem.period,
-        least_force,
-        samples,
-    )
+    return told, _FROM_SUM @ end, _FROM_SUM @ jacobian
+
+
+def _bearings(problem: Problem) -> np.ndarray:
+    """Return 2 mu, w^2 and 2 zeta w."""
+    square = problem.bearing_stiffness / problem.body_mass
+    damped = 2.0 * problem.bearing_damping_ratio * math.sqrt(square)
+    return np.array([2.0 / problem.body_mass, square, damped])
 
 
 def segments_of(problem: Problem) -> np.ndarray:

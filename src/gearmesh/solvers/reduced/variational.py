@@ -35,7 +35,7 @@ COMPLETE, TOO_MANY_STEPS, TOO_MANY_EVENTS, DIVERGED = range(4)
 _REST = 1e-14  # velocities and accelerations below this are rounding errors of a body at rest
 _NARROWEST = 1e-8  # share of a step in which two roots are not told apart
 _SAMPLE_EDGE = 1e-9  # share of the sampling interval
-_MOST_STEPS_PER_PERIOD = 4000
+_MOST_STEPS_PER_SEGMENT = 1000
 _FARTHEST = 1e9
 _FORCE_PLACES = 8
 
@@ -246,7 +246,7 @@ def propagate(
     laws,
     backlash,
     bearings,
-    periods,
+    visits,
     longest,
     tolerance,
     state,
@@ -255,7 +255,7 @@ def propagate(
     samples,
     per_period,
 ):
-    """Move `state` and its `jacobian` over whole mesh periods, in place.
+    """Move `state` and its `jacobian` over the segments of the mesh period, in place.
 
     Parameters
     ----------
@@ -266,7 +266,8 @@ def propagate(
     backlash : float
     bearings : ndarray, shape (3,)
         2 mu, w^2, 2 zeta w.
-    periods : int
+    visits : int
+        Segments to pass; after the last segment of the period follows its first.
     longest, tolerance : float
         Bounds of a step and of its relative error.
     state : ndarray, shape (4,)
@@ -296,7 +297,7 @@ def propagate(
     spacing = np.inf
     if per_period > 0:
         spacing = np.sum(segments[:, 0]) / per_period
-    for visit in range(periods * len(segments)):
+    for visit in range(visits):
         number = visit % len(segments)
         length, g = segments[number, 0], segments[number, 2]
         c, offset = _touching(regime, backlash, segments[number, 1])
@@ -317,7 +318,7 @@ def propagate(
         since = 0.0
         while since < length:
             steps += 1
-            if steps > periods * _MOST_STEPS_PER_PERIOD:
+            if steps > visits * _MOST_STEPS_PER_SEGMENT:
                 return TOO_MANY_STEPS, n_events, damping, least_force
             if not abs(state[0]) + abs(state[2]) < _FARTHEST:
                 return DIVERGED, n_events, damping, least_force
