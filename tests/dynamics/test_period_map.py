@@ -172,3 +172,13 @@ def test_saltation_gives_the_multiplier_of_the_switched_oscillator():
 def test_a_motion_that_runs_away_says_so():
     case = replace(problem(0.7, material=(-50.0, 0.0, 0.0)), backlash=1e12)
     assert passage(case, REST, 20).status == "diverged"
+
+
+@pytest.mark.parametrize(("level", "velocity"), [(0.0, -1.0), (0.0, 1.0), (-4.0, 1.0)])
+def test_a_start_at_the_end_of_a_regime_goes_where_it_moves(level, velocity):
+    case = problem(0.8, "b-lubricant")
+    ends = [
+        passage(case, (level + away + 2.0, velocity, -2.0, 0.0)).end
+        for away in (0.0, 1e-12, -1e-12)
+    ]
+    np.testing.assert_allclose(ends[1:], [ends[0]] * 2, atol=1e-10, rtol=0)

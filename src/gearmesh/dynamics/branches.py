@@ -17,17 +17,25 @@ from gearmesh.model.motion import Problem
 from gearmesh.solvers.reduced.period_map import passage
 
 LONGEST_STEP = 0.03
-"""Longest step along a branch, in y_st and shares of the range of the parameter."""
+"""Longest step along a branch, in y_st and shares of the range of the parameter.
+
+It grows in proportion to motions of more than `_LARGE`.
+"""
+
+FARTHEST = 100.0
+"""Size of y, in y_st, at which a branch is not followed further."""
 
 MOST_POINTS = 4000
 """Points after which a branch is given up."""
 
-LIMIT, CLOSED, HALVED = "limit", "closed", "half the period"
+LIMIT, CLOSED, HALVED, FAR = "limit", "closed", "half the period", "far"
 """Ends of a branch: at a limit of the parameter, at its own start, at a flip of an orbit of half
-the period, where the orbits of the branch come again one half of their period later."""
+the period, where the orbits of the branch come again one half of their period later, and at
+motions larger than `FARTHEST`."""
 
 _FIRST_STEP = 0.25  # of the longest
 _GROWTH = 1.4
+_LARGE = 5.0
 _AT_LIMIT = 1e-9  # share of the range of the parameter
 _SAME = 1e-7  # distance between two states that are the same
 _AMPLITUDE = 1e-3  # of the first orbit after a flip
@@ -49,8 +57,8 @@ class Branch:
     special : list of SpecialPoint
         Special points in their order along the branch.
     ends : tuple of two str
-        Why the branch stops at its first and at its last point: `LIMIT`, `CLOSED`, `HALVED`, or
-        what keeps the corrector from going on.
+        Why the branch stops at its first and at its last point: `LIMIT`, `CLOSED`, `HALVED`,
+        `FAR`, or what keeps the corrector from going on.
     """
 
     parameter: str
@@ -206,7 +214,10 @@ def _follow(piece: _Piece, limits: tuple[float, float], longest: float) -> _Walk
         pieces[-1].points.append(following)
         if _is_back(curve, point, following, start):
             return _Walk(pieces, CLOSED, [])
-        length = min(_GROWTH * length, longest)
+        size = max(following.orbit.y_max, -following.orbit.y_min)
+        if size > FARTHEST:
+            return _Walk(pieces, FAR, [])
+        length = min(_GROWTH * length, longest * max(1.0, size / _LARGE))
     return _Walk(pieces, "too many points", [])
 
 

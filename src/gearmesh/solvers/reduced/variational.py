@@ -162,7 +162,7 @@ def value_and_slope(polynomial, s):
 @inner
 def root_between(polynomial, low, high):
     """Return the root of a polynomial that is monotone between `low` and `high`."""
-    falling = value_and_slope(polynomial, low)[0] > 0.0
+    falling = value_and_slope(polynomial, low)[0] > value_and_slope(polynomial, high)[0]
     s = 0.5 * (low + high)
     for _ in range(80):
         value, slope = value_and_slope(polynomial, s)
@@ -289,9 +289,11 @@ def propagate(
     slope, square = np.zeros(ORDER + 1), np.zeros(ORDER + 1)
     front = np.zeros(SIZE)
     front[0] = 1.0
-    regime = NORMAL_MESH
-    if state[0] < 0.0:
-        regime = INVERSE_MESH if state[0] <= -backlash else CONTACT_LOSS
+    regime = CONTACT_LOSS
+    if state[0] > 0.0 or (state[0] == 0.0 and state[1] >= 0.0):
+        regime = NORMAL_MESH
+    elif state[0] < -backlash or (state[0] == -backlash and state[1] <= 0.0):
+        regime = INVERSE_MESH
     n_events, n_samples, steps = 0, 0, 0
     damping, least_force, begun = 0.0, np.inf, 0.0
     spacing = np.inf
@@ -382,7 +384,7 @@ def propagate(
                 c, offset = _touching(regime, backlash, segments[number, 1])
                 law = laws[abs(regime)]
             after = vector_field(state, direction, c, offset, g, law, bearings)
-            if kind == CROSSING:
+            if kind == CROSSING and state[1] != 0.0:
                 jacobian[:, :] = saltation(before, after, front) @ jacobian
             event = events[n_events]
             event[TIME], event[KIND], event[HEIGHT] = begun + since, kind, state[0]
