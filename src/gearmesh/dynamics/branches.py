@@ -13,7 +13,7 @@ from gearmesh.dynamics.continuation import Curve, Family, Point, at_phase, clear
 from gearmesh.dynamics.orbits import Orbit
 from gearmesh.dynamics.special_points import SpecialPoint, flip_test, special_points
 from gearmesh.errors import NoOrbit
-from gearmesh.model.motion import Problem
+from gearmesh.model.problem import Problem
 from gearmesh.solvers.reduced.period_map import passage
 
 LONGEST_STEP = 0.03
@@ -141,7 +141,7 @@ def follow(
     special = [
         SpecialPoint(kind, found.problem.nu, {parameter: point.value}, found)
         for kind, point in [*back.flip[: back is not ahead], *_special(pieces), *ahead.flip]
-        for found in [at_phase(point.orbit, phase)]
+        for found in (at_phase(point.orbit, phase),)
     ]
     return Branch(
         parameter,

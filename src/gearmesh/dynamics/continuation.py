@@ -12,7 +12,7 @@ import numpy as np
 
 from gearmesh.dynamics.orbits import LARGEST_RESIDUAL, Orbit
 from gearmesh.errors import NoOrbit
-from gearmesh.model.motion import Problem
+from gearmesh.model.problem import Problem
 from gearmesh.solvers.reduced.period_map import advance, passage
 
 Family = Callable[[float], Problem]

@@ -1,7 +1,7 @@
 """Periodic orbits of the reduced system: shooting, Floquet multipliers, and their certificates.
 
 A period-n orbit is a fixed point of the n-th power of the stroboscopic map P, which takes the
-state (u, u', b, b') at the initial phase to the state one mesh period later. Newton's method on
+state (y, y', b, b') at the initial phase to the state one mesh period later. Newton's method on
 P^n(x) - x uses the exact Jacobian of `gearmesh.solvers.reduced.period_map`.
 """
 
@@ -13,7 +13,8 @@ import numpy as np
 
 from gearmesh.dynamics.starts import starts
 from gearmesh.errors import NoOrbit
-from gearmesh.model.motion import CONTACT_LOSS, INVERSE_MESH, Problem
+from gearmesh.model.contact import CONTACT_LOSS, INVERSE_MESH, regime_of
+from gearmesh.model.problem import Problem
 from gearmesh.solvers.reduced.period_map import LONGEST_ANGLE, Passage, passage
 from gearmesh.solvers.reduced.runs import is_reducible
 from gearmesh.solvers.reduced.variational import (
@@ -71,7 +72,7 @@ class TimeCourse(NamedTuple):
     y, v, a : ndarray
         y and its first two derivatives.
     regime : ndarray of int
-        See `gearmesh.model.motion`.
+        See `gearmesh.model.contact`.
     """
 
     time: np.ndarray
@@ -92,7 +93,7 @@ class Orbit:
     periods : int
         The least period n, in mesh periods.
     state : ndarray, shape (4,)
-        u, u', b, b' at `Problem.initial_phase`.
+        y, y', b, b' at `Problem.initial_phase`.
     passage : Passage
         The motion over the period of the orbit.
     """
@@ -105,12 +106,12 @@ class Orbit:
     @property
     def y(self) -> float:
         """Relative motion y at the initial phase."""
-        return float(self.state[0] + self.state[2])
+        return float(self.state[0])
 
     @property
     def v(self) -> float:
         """Velocity y' at the initial phase."""
-        return float(self.state[1] + self.state[3])
+        return float(self.state[1])
 
     @property
     def residual(self) -> float:
@@ -148,8 +149,7 @@ class Orbit:
         events = self.passage.events
         sequence = [int(event[REGIME]) for event in events[events[:, KIND] == CROSSING]]
         if not sequence:
-            below = INVERSE_MESH if self.y <= -self.problem.backlash else CONTACT_LOSS
-            return (1 if self.y >= 0.0 else below,)
+            return (int(regime_of(self.y, self.problem.backlash)),)
         return max(tuple(sequence[i:] + sequence[:i]) for i in range(len(sequence)))
 
     @cached_property
@@ -209,7 +209,7 @@ def find_orbit(problem: Problem, periods: int = 1, start: np.ndarray | None = No
     periods : int
         Least period n in mesh periods, >= 1.
     start : array_like, shape (4,), optional
-        u, u', b, b' at the initial phase near the orbit. By default several are tried: the
+        y, y', b, b' at the initial phase near the orbit. By default several are tried: the
         periodic motion without contact loss, the ends of long runs, and a grid of states.
 
     Raises

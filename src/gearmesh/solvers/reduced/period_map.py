@@ -7,11 +7,11 @@ from dataclasses import dataclass
 import numpy as np
 from numba import njit
 
-from gearmesh.model import motion
-from gearmesh.model.motion import Problem
+from gearmesh.model.problem import Problem
+from gearmesh.model.segments import segments
 from gearmesh.solvers.compilation import persistent
+from gearmesh.solvers.limits import highest_frequency
 from gearmesh.solvers.reduced import variational
-from gearmesh.solvers.reduced.runs import _pattern, _stretches
 
 TOLERANCE = 1e-16
 """Bound of the last terms of a step, relative to the state: rounding decides the accuracy."""
@@ -24,21 +24,18 @@ STATUSES = ("complete", "too many steps", "too many events", "diverged")
 
 _EVENTS_PER_PERIOD = 64
 _NO_SAMPLES = np.empty((0, 4))
-# u = y - b in the coordinates (u, u', b, b') of `Problem.initial_state`.
-_TO_SUM = np.array([[1.0, 0, 1, 0], [0, 1, 0, 1], [0, 0, 1, 0], [0, 0, 0, 1]])
-_FROM_SUM = np.array([[1.0, 0, -1, 0], [0, 1, 0, -1], [0, 0, 1, 0], [0, 0, 0, 1]])
 
 
-def _build_propagation(sources: str, cache: bool) -> Callable[..., tuple[int, int, float, float]]:
+def _build_propagation(key: str, cache: bool) -> Callable[..., tuple[int, int, float, float]]:
     @njit(cache=cache, nogil=True)
     def compiled(*arguments):  # type: ignore[no-untyped-def]
-        sources  # noqa: B018 (see persistent)
+        key  # noqa: B018 (see persistent)
         return variational.propagate(*arguments)
 
     return compiled
 
 
-_propagate = persistent(_build_propagation, variational, motion)
+_propagate = persistent(_build_propagation)
 
 
 @dataclass(frozen=True, slots=True)
@@ -50,7 +47,7 @@ class Passage:
     status : str
         ``"complete"``, or why the motion ends early.
     end : ndarray, shape (4,)
-        u, u', b, b' at the end.
+        y, y', b, b' at the end.
     jacobian : ndarray, shape (4, 4)
         Derivatives of `end` with respect to the state at the start.
     events : ndarray, shape (n, variational.EVENT_SIZE)
@@ -90,7 +87,7 @@ def passage(
     problem : Problem
         Reducible: without run-out, profile deviation and Fourier stiffness.
     state : array_like, shape (4,)
-        u, u', b, b' at `Problem.initial_phase`.
+        y, y', b, b' at `Problem.initial_phase`.
     periods : int
         Mesh periods, >= 1.
     samples_per_period : int
@@ -98,12 +95,12 @@ def passage(
     longest_angle : float
         Bound of a step times the highest natural frequency.
     """
-    segments = segments_of(problem)
+    parts = segments_of(problem)
     events = np.empty((_EVENTS_PER_PERIOD * periods, variational.EVENT_SIZE))
     samples = np.empty((samples_per_period * periods, 4))
-    visits = periods * len(segments)
+    visits = periods * len(parts)
     (outcome, n_events, damping, least_force), end, jacobian = _move(
-        problem, segments, visits, state, events, longest_angle, samples, samples_per_period
+        problem, parts, visits, state, events, longest_angle, samples, samples_per_period
     )
     two_mu, _, bearing = _bearings(problem)
     return Passage(
@@ -120,18 +117,18 @@ def passage(
 
 def advance(problem: Problem, state: np.ndarray, share: float) -> np.ndarray:
     """Return the state that the motion reaches after a share of a mesh period, 0 to 1."""
-    segments = segments_of(problem)
-    ends = np.cumsum(segments[:, 0])
-    begins = ends - segments[:, 0]
-    segments[:, 0] = np.minimum(ends, share * problem.period) - begins
-    segments = segments[segments[:, 0] > 0.0]
+    parts = segments_of(problem)
+    ends = np.cumsum(parts[:, 0])
+    begins = ends - parts[:, 0]
+    parts[:, 0] = np.minimum(ends, share * problem.period) - begins
+    parts = parts[parts[:, 0] > 0.0]
     events = np.empty((_EVENTS_PER_PERIOD, variational.EVENT_SIZE))
-    return _move(problem, segments, len(segments), state, events)[1]
+    return _move(problem, parts, len(parts), state, events)[1]
 
 
 def _move(
     problem: Problem,
-    segments: np.ndarray,
+    parts: np.ndarray,
     visits: int,
     state: np.ndarray,
     events: np.ndarray,
@@ -140,16 +137,14 @@ def _move(
     samples_per_period: int = 0,
 ) -> tuple[tuple[int, int, float, float], np.ndarray, np.ndarray]:
     """Return what the compiled code returns, the state at the end and its Jacobian."""
-    bearings = _bearings(problem)
-    highest = math.sqrt(problem.stiffness_max * (1.0 + bearings[0]) + bearings[1])
-    end, jacobian = _TO_SUM @ np.asarray(state, float), _TO_SUM.copy()
-    told = _propagate(
-        segments,
+    end, jacobian = np.array(state, float), np.eye(4)
+    measured = _propagate(
+        parts,
         np.array([problem.lubricant, problem.material]),
         problem.backlash,
-        bearings,
+        _bearings(problem),
         visits,
-        longest_angle / highest,
+        longest_angle / highest_frequency(problem),
         TOLERANCE,
         end,
         jacobian,
@@ -157,7 +152,7 @@ def _move(
         samples,
         samples_per_period,
     )
-    return told, _FROM_SUM @ end, _FROM_SUM @ jacobian
+    return measured, end, jacobian
 
 
 def _bearings(problem: Problem) -> np.ndarray:
@@ -177,6 +172,6 @@ def segments_of(problem: Problem) -> np.ndarray:
                 problem.stiffness_max if segment.double else problem.stiffness_min,
                 friction * segment.gamma,
             )
-            for segment in _stretches(*_pattern(problem))
+            for segment in segments(problem)
         ]
     )

@@ -13,7 +13,7 @@ deviations (`saltation`); jumps of C(t) and gamma(t) happen at fixed times and d
 
 import numpy as np
 
-from gearmesh.model.motion import CONTACT_LOSS, INVERSE_MESH, NORMAL_MESH
+from gearmesh.model.contact import CONTACT_LOSS, INVERSE_MESH, NORMAL_MESH
 from gearmesh.solvers.compilation import inner
 
 ORDER = 20
