@@ -1,8 +1,9 @@
-"""Curves of orbits in state and parameter: corrector, tangent and steps by pseudo-arclength.
+"""Curves of orbits in state and parameters: corrector, tangent and steps by pseudo-arclength.
 
-A family of problems depends on one parameter. Its period-n orbits are curves in the space of the
-state and the parameter, smooth through grazings and folds, so a curve is followed by its
-arclength and not by the parameter.
+The period-n orbits of a family of problems with one parameter are curves in the space of the state
+and the parameter. So are those orbits of a family with two parameters that meet one condition, such
+as a fold. The curves are smooth through grazings and folds, so they are followed by their
+arclength and not by a parameter.
 """
 
 from collections.abc import Callable
@@ -15,8 +16,8 @@ from gearmesh.errors import NoOrbit
 from gearmesh.model.problem import Problem
 from gearmesh.solvers.reduced.period_map import advance, passage
 
-Family = Callable[[float], Problem]
-"""The problem at a value of the parameter."""
+Family = Callable[..., Problem]
+"""The problem at the values of the parameters."""
 
 _MOST_CORRECTIONS = 12
 _DIFFERENCE = 1e-5
@@ -32,19 +33,20 @@ class Point:
 
     Attributes
     ----------
-    place : ndarray, shape (5,)
-        The state, and the parameter in units of the curve.
-    value : float
-        The parameter.
-    tangent : ndarray, shape (5,)
+    place : ndarray, shape (4 + m,)
+        The state, and the m parameters in units of the curve.
+    values : tuple of float
+        The parameters.
+    tangent : ndarray, shape (4 + m,)
         Unit tangent of the curve.
     determinant : float
-        Determinant of the Jacobian of P^n(x) - x in state and parameter, bordered by the tangent.
+        Determinant of the Jacobian of P^n(x) - x (and of the condition) in state and parameters,
+        bordered by the tangent.
     orbit : Orbit
     """
 
     place: np.ndarray
-    value: float
+    values: tuple[float, ...]
     tangent: np.ndarray
     determinant: float
     orbit: Orbit
@@ -61,28 +63,31 @@ class Curve:
     Attributes
     ----------
     family : callable
-        The problem at a value of the parameter.
+        The problem at the values of the parameters.
     periods : int
         n.
-    unit : float
-        Change of the parameter that counts like a change of 1 in the state.
+    units : tuple of float
+        Change of each parameter that counts like a change of 1 in the state.
     phase : float
         Mesh phase at which the state is taken. The state has a kink along the curve where it
         passes an end of a regime at this very phase, because damping jumps there.
+    condition : callable, optional
+        With two parameters: what is 0 for the orbits of the curve.
     """
 
     family: Family
     periods: int
-    unit: float
+    units: tuple[float, ...]
     phase: float
+    condition: Callable[[Orbit], float] | None = None
 
     def point(self, place: np.ndarray, normal: np.ndarray, along: np.ndarray) -> Point:
         """Return the point of the curve in the plane through `place` with the given normal.
 
         Parameters
         ----------
-        place, normal : ndarray, shape (5,)
-        along : ndarray, shape (5,)
+        place, normal : ndarray, shape (4 + m,)
+        along : ndarray, shape (4 + m,)
             Direction that the tangent follows.
 
         Raises
@@ -91,42 +96,49 @@ class Curve:
             If Newton's method does not converge.
         """
         origin, best = place, np.inf
-        orbit = self._orbit(place)
-        sensitivity = self._sensitivity(place)
+        orbit, gradients = self._orbit(place), self._gradients(place)
         for _ in range(_MOST_CORRECTIONS):
-            if not orbit.residual < best:
+            defect = self._defect(orbit)
+            if not np.abs(defect).max() < best:
                 break
-            best = orbit.residual
+            best = float(np.abs(defect).max())
             found, found_orbit = place, orbit
-            defect = np.append(orbit.passage.end - orbit.state, normal @ (place - origin))
-            matrix = _bordered(orbit, sensitivity, normal)
+            gradients[:4, :4] = orbit.passage.jacobian - np.eye(4)
             try:
-                place = place - np.linalg.solve(matrix, defect)
+                correction = np.linalg.solve(
+                    np.vstack([gradients, normal]), np.append(defect, normal @ (place - origin))
+                )
             except np.linalg.LinAlgError as error:
                 raise NoOrbit("the curve is singular here") from error
+            place = place - correction
             orbit = self._orbit(place)
         if not best < LARGEST_RESIDUAL:
             raise NoOrbit(f"the corrector stops at a residual of {best:.1e}")
-        sensitivity = self._sensitivity(found)
-        tangent = np.linalg.svd(_bordered(found_orbit, sensitivity, normal)[:4])[2][-1]
+        gradients = self._gradients(found)
+        gradients[:4, :4] = found_orbit.passage.jacobian - np.eye(4)
+        tangent = np.linalg.svd(gradients)[2][-1]
         if tangent @ along < 0.0:
             tangent = -tangent
-        determinant = float(np.linalg.det(_bordered(found_orbit, sensitivity, tangent)))
-        return Point(found, self.unit * float(found[4]), tangent, determinant, found_orbit)
+        determinant = float(np.linalg.det(np.vstack([gradients, tangent])))
+        return Point(found, self._values(found), tangent, determinant, found_orbit)
 
-    def at(self, orbit: Orbit, value: float) -> Point:
-        """Return the point near `orbit` at a value of the parameter, the tangent towards more."""
-        up = np.append(np.zeros(4), 1.0)
-        return self.point(np.append(orbit.state, value / self.unit), up, up)
+    def at(self, orbit: Orbit, values: tuple[float, ...]) -> Point:
+        """Return the point near `orbit` at a value of the first parameter, or near several.
+
+        Its tangent points to more of the first parameter.
+        """
+        up = np.zeros(4 + len(values))
+        up[4] = 1.0
+        return self.point(np.append(orbit.state, np.divide(values, self.units)), up, up)
 
     def moved_to(self, phase: float, point: Point) -> tuple["Curve", Point]:
         """Return the curve with its state taken at another phase, and a point on it."""
         other = replace(self, phase=phase)
         near = self.step(point, _DIFFERENCE)
         here, there = (at_phase(one.orbit, phase).state for one in (point, near))
-        along = np.append((there - here) / _DIFFERENCE, point.tangent[4])
+        along = np.append((there - here) / _DIFFERENCE, point.tangent[4:])
         along /= np.linalg.norm(along)
-        return other, other.point(np.append(here, point.place[4]), along, along)
+        return other, other.point(np.append(here, point.place[4:]), along, along)
 
     def step(self, point: Point, length: float) -> Point:
         """Return the point one step ahead along the tangent."""
@@ -156,31 +168,32 @@ class Curve:
         raise NoOrbit(reason)
 
     def _orbit(self, place: np.ndarray) -> Orbit:
-        problem = self._problem(place[4])
+        problem = self.family(*self._values(place))
+        problem = replace(problem, initial_phase=self.phase, initial_state=None)
         moved = passage(problem, place[:4], self.periods)
         if moved.status != "complete":
             raise NoOrbit(f"the motion ends with {moved.status}")
         return Orbit(problem, self.periods, place[:4], moved)
 
-    def _problem(self, coordinate: float) -> Problem:
-        problem = self.family(self.unit * float(coordinate))
-        return replace(problem, initial_phase=self.phase, initial_state=None)
+    def _values(self, place: np.ndarray) -> tuple[float, ...]:
+        return tuple(float(value) for value in place[4:] * self.units)
 
-    def _sensitivity(self, place: np.ndarray) -> np.ndarray:
-        """Return the derivative of P^n with respect to the parameter, by differences.
+    def _defect(self, orbit: Orbit) -> np.ndarray:
+        defect = orbit.passage.end - orbit.state
+        return defect if self.condition is None else np.append(defect, self.condition(orbit))
 
-        It decides the direction of Newton's steps and not where they end.
+    def _gradients(self, place: np.ndarray) -> np.ndarray:
+        """Return the gradients of the defect by differences, but for those of P^n in the state.
+
+        They decide the direction of Newton's steps and not where they end.
         """
-        ends = []
-        for side in (_DIFFERENCE, -_DIFFERENCE):
-            problem = self._problem(place[4] + side)
-            ends.append(passage(problem, place[:4], self.periods).end)
-        return (ends[0] - ends[1]) / (2.0 * _DIFFERENCE)
-
-
-def _bordered(orbit: Orbit, sensitivity: np.ndarray, border: np.ndarray) -> np.ndarray:
-    rows = np.column_stack([orbit.passage.jacobian - np.eye(4), sensitivity])
-    return np.vstack([rows, border])
+        rows = len(place) - 1
+        gradients = np.zeros((rows, len(place)))
+        for i in range(4 if self.condition is None else 0, len(place)):
+            away = _DIFFERENCE * np.eye(len(place))[i]
+            ahead, behind = (self._defect(self._orbit(place + side * away)) for side in (1.0, -1.0))
+            gradients[:, i] = (ahead - behind) / (2.0 * _DIFFERENCE)
+        return gradients
 
 
 def at_phase(orbit: Orbit, phase: float) -> Orbit:

@@ -5,7 +5,7 @@ changes its sign, a root is located on the branch itself. Where its tangents at 
 room for two roots in between, the piece of the branch is halved until they do not.
 """
 
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from itertools import combinations, pairwise
 
@@ -53,25 +53,28 @@ class SpecialPoint:
     orbit: Orbit
 
 
+def search(curve: Curve, left: Point, right: Point, tests: list[Test]) -> list[tuple[str, Point]]:
+    """Return where tests pass 0 between two neighbouring points of a curve, in their order."""
+    found = _search(curve, left, right, tests)
+    return sorted(found, key=lambda item: float(left.tangent @ item[1].place))
+
+
 def special_points(curve: Curve, left: Point, right: Point) -> list[tuple[str, Point]]:
     """Return the special points between two neighbouring points of a branch, in their order.
 
     Multipliers have a root singularity where the orbit grazes, so they are tested in the pieces
     between the grazings and not across them.
     """
-    events = _ordered(left, _search(curve, left, right, _event_tests(left)))
+    events = search(curve, left, right, _event_tests(left))
     ends = [left, *(point for _, point in events), right]
     bifurcations = [
         found
         for start, end in pairwise(ends)
         if _length(start, end) > _NARROWEST_PIECE
-        for found in _search(curve, start, end, _bifurcation_tests())
+        for found in search(curve, start, end, _bifurcation_tests())
     ]
-    return _ordered(left, [*events, *bifurcations])
-
-
-def _ordered(left: Point, found: Iterable[tuple[str, Point]]) -> list[tuple[str, Point]]:
-    return sorted(found, key=lambda item: float(left.tangent @ item[1].place))
+    order = [*events, *bifurcations]
+    return sorted(order, key=lambda item: float(left.tangent @ item[1].place))
 
 
 def _search(
@@ -158,7 +161,7 @@ def _bifurcation_tests() -> list[Test]:
         ("fold", lambda point: float(point.tangent[4])),
         ("branch_point", lambda point: point.determinant),
         ("flip", lambda point: flip_test(point.orbit)),
-        ("torus", _torus),
+        ("torus", lambda point: torus_test(point.orbit)),
     ]
 
 
@@ -174,21 +177,20 @@ def _event_tests(point: Point) -> list[Test]:
         phase = time / point.orbit.problem.period
         tests.append(("grazing_front", _height_above(0.0, phase, kind)))
         tests.append(("grazing_back", _height_above(-1.0, phase, kind)))
-    for number, switch in enumerate(_switches(point.orbit)):
+    for number, switch in enumerate(stiffness_jumps(point.orbit)):
         if switch[BEFORE] * switch[AFTER] < 0.0:
             tests.append(("switching", _velocity_at(number)))
     return tests
 
 
-def _torus(point: Point) -> float:
+def torus_test(orbit: Orbit) -> float:
     """Return the product of all mu_i mu_k - 1, which is 0 where a pair is on the unit circle.
 
     Without damping in the mesh a pair may stand there all along the branch: no number then.
     """
-    if point.orbit.passage.damping == 0.0:
+    if orbit.passage.damping == 0.0:
         return float("nan")
-    pairs = combinations(point.orbit.multipliers, 2)
-    return float(np.prod([a * b - 1.0 for a, b in pairs]).real)
+    return float(np.prod([a * b - 1.0 for a, b in combinations(orbit.multipliers, 2)]).real)
 
 
 def _height_above(level: float, phase: float, kind: float) -> Callable[[Point], float]:
@@ -213,13 +215,13 @@ def _velocity_at(number: int) -> Callable[[Point], float]:
     """Return the test of a switch of C(t): the velocity there."""
 
     def velocity(point: Point) -> float:
-        switches = _switches(point.orbit)
+        switches = stiffness_jumps(point.orbit)
         return float(switches[number, VELOCITY]) if number < len(switches) else float("nan")
 
     return velocity
 
 
-def _switches(orbit: Orbit) -> np.ndarray:
+def stiffness_jumps(orbit: Orbit) -> np.ndarray:
     """Return the events at which C(t) jumps."""
     events = orbit.passage.events
     events = events[events[:, KIND] == SWITCH]
