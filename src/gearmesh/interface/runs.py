@@ -164,7 +164,7 @@ def sweep(
     at = {x: i for i, x in enumerate(order)}
     rows = [responses[i * len(pairs) + j][at[x]] for i in range(len(chosen)) for x in nus
             for j in range(len(pairs))]  # fmt: skip
-    axes = {"variant": [variant.name for variant in chosen], "nu": nus}
+    axes: dict[str, Sequence[object]] = {"variant": [variant.name for variant in chosen], "nu": nus}
     axes |= {name: _axis(name, values, pair) for name, values in over.items()}
     dataset = grid_dataset(rows, pairs * (len(rows) // len(pairs)), axes)
     return _described(dataset, pair, over)

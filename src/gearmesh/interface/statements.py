@@ -80,5 +80,6 @@ def with_settings(pair: Pair, start: Start | None = None, **settings: object) ->
 
 def _length(value: object) -> object:
     """Take a bare number as a number of static deflections."""
-    number = isinstance(value, int | float | np.number) and not isinstance(value, bool)
-    return f"{float(value)!r} y_st" if number else value
+    if isinstance(value, int | float | np.number) and not isinstance(value, bool):
+        return f"{float(value)!r} y_st"
+    return value

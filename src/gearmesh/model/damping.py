@@ -1,9 +1,8 @@
 """The damping force of eq. (7)."""
 
 from collections.abc import Sequence
-from typing import Any, TypeVar
 
-Number = TypeVar("Number", bound=Any)
+from gearmesh.model.contact import Number
 
 
 def damping_force(velocity: Number, law: Sequence[float]) -> Number:

@@ -7,7 +7,6 @@ have.
 """
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 PITCH_PHASE = 0.5
 """Mesh phase at which a single pair of equal wheels touches at the pitch point."""
@@ -55,7 +54,7 @@ def fourier_amplitudes(
 
 
 def fourier(
-    phase: ArrayLike, contact_ratio: float, maximum: float, minimum: float, terms: int
+    phase: float | np.ndarray, contact_ratio: float, maximum: float, minimum: float, terms: int
 ) -> np.ndarray:
     """Return the stiffness at `phase`, a float or an array, by eq. (4) cut after `terms` terms."""
     n = np.arange(1, terms + 1)

@@ -10,6 +10,7 @@ from dataclasses import asdict
 import numpy as np
 
 from gearmesh.dynamics import response_curves as curves
+from gearmesh.dynamics.refinement import Batch
 from gearmesh.dynamics.response_curves import FailedRun, Jump, ResponseCurve
 from gearmesh.model.variants import variant
 from gearmesh.solvers.response import MAXIMUM, MINIMUM, Response
@@ -175,7 +176,7 @@ def _of_lubricant(curve: ResponseCurve, pair: Pair) -> Found:
     }
 
 
-def _spread_below_and_above(curve: ResponseCurve, spread: curves.Batch) -> dict[str, float]:
+def _spread_below_and_above(curve: ResponseCurve, spread: Batch) -> dict[str, float]:
     """Return the typical spread below 0.8, away from the jump near 0.66, and above 1.1."""
     orderly = np.array([nu for nu in curve.scan(FIRST, 0.80) if abs(nu - 0.66) > 0.02])
     return {
@@ -221,10 +222,13 @@ def _of_loops(curve: ResponseCurve, pair: Pair) -> Found:
 
 def loop_place(curve: ResponseCurve, end: float, initial_phase: float) -> float:
     """Return the phase of the mesh period at which the last loop, just below its end, closes."""
-    response = curve.at([end - curve.width])[0]
-    closest = int(np.argmin(np.abs(np.diff(response.extremum_y))))
-    time = response.extremum_time[closest : closest + 2].mean()
-    return float((time / response.period + initial_phase) % 1.0)
+
+    def place(response: Response) -> float:
+        closest = int(np.argmin(np.abs(np.diff(response.extremum_y))))
+        time = response.extremum_time[closest : closest + 2].mean()
+        return float((time / response.period + initial_phase) % 1.0)
+
+    return float(curve.of(place)(np.array([end - curve.width]))[0])
 
 
 def _least(values: Iterable[float]) -> float:

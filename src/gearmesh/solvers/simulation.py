@@ -49,8 +49,7 @@ def simulate(
         found = reduced.integrate(
             [problems[i] for i in chunk], tolerance, samples_per_period, estimate_errors
         )
-        for i, measured in zip(chunk, found, strict=True):
-            responses[i] = measured
+        responses.update(zip(chunk, found, strict=True))
     if len(reducible) < len(problems):
         from gearmesh.solvers.full.runs import integrate
 
