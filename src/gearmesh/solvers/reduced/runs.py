@@ -3,7 +3,7 @@
 import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
-from functools import cached_property, lru_cache
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -177,7 +177,6 @@ def _start(problem: Problem) -> tuple[tuple[float, float, float, float], float, 
     return start, branches.regime, branches.direction if follows else 0.0
 
 
-@lru_cache
 def _sample_ends(parts: tuple[Segment, ...], per_period: int) -> list[int]:
     """Return the number of the first sample behind each segment; one at its end is behind it."""
     return [math.ceil(part.end * per_period - _ON_EDGE) for part in parts]
