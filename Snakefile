@@ -23,7 +23,6 @@ try:
     PLAN = pipeline.load(
         workflow.config_settings.config, workflow.configfiles, workflow.is_main_process
     )
-    PLAN.check()
 except InputError as error:
     say(f"error: {error}")
     sys.exit(BAD_INPUT)
@@ -49,7 +48,6 @@ wildcard_constraints:
 
 localrules:
     all,
-    again,
     data,
     datasets,
     figures,
@@ -63,12 +61,6 @@ rule all:
         PLACES.report,
         PLACES.hashes,
         PLACES.as_expected if PLAN.study.claims else [],
-
-
-# Jobs whose manifest does not hold have its output as an input, which makes Snakemake run them.
-rule again:
-    output:
-        temp(touch(PLACES.again)),
 
 
 rule data:

@@ -5,7 +5,6 @@ from dataclasses import replace
 import numpy as np
 import pytest
 import yaml
-from gearmesh.identification.courses import ACCURACY
 from project import Project
 
 from gearmesh.data import paths

@@ -106,7 +106,7 @@ class Places:
 
     @property
     def again(self) -> Path:
-        """Input of all jobs whose manifest does not hold, so that Snakemake runs them."""
+        """Input of all jobs whose manifest does not hold; newer than everything, so they run."""
         return self.folder / ".again"
 
     @property

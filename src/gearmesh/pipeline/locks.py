@@ -8,6 +8,7 @@ that outlive a run that was killed still hold it, and the next run waits for the
 import contextlib
 import errno
 import fcntl
+import os
 import shutil
 from collections.abc import Iterator
 from typing import TextIO
@@ -62,11 +63,14 @@ def begin_run(places: Places) -> None:
     _wait_for_jobs(places)
     shutil.rmtree(places.scratch, ignore_errors=True)
     remove_partial(places.folder)
+    # Snakemake has planned its jobs by now, and refuses outputs that are older than an input.
+    os.utime(places.again, (0, 0))
 
 
 def end_run(places: Places) -> None:
     """Remove temporary files; the lock is let go when the process ends."""
     shutil.rmtree(places.scratch, ignore_errors=True)
+    places.again.unlink(missing_ok=True)
 
 
 def _wait_for_jobs(places: Places) -> None:

@@ -6,8 +6,10 @@ was changed, or when it was made of something else. The manifests are checked wh
 """
 
 import hashlib
+import os
 import shlex
 import sys
+import time
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
@@ -28,6 +30,10 @@ from gearmesh.study.loading import load_study
 
 _TEMPLATES = provenance.PACKAGE / "report" / "templates"
 _STYLE = provenance.PACKAGE / "reproduction" / "figures" / "gearmesh.mplstyle"
+
+
+_FAR_FUTURE = 2**32 - 1
+"""A time that no result has, in seconds: the year 2106."""
 
 
 @dataclass(frozen=True)
@@ -87,10 +93,6 @@ class Plan:
         facts = _FACTS[stage](self, *arguments) if stage in _FACTS else ()
         return hashlib.sha256(repr((code, facts)).encode()).hexdigest()
 
-    def check(self) -> None:
-        """Check all manifests now, so that whatever is wrong is reported before all jobs."""
-        self.holding  # noqa: B018
-
     def again(self, stage: str, *arguments: str) -> list[Path]:
         """Return the input that makes a job run again, nothing while its manifest holds."""
         if self.holding is None or job_name(stage, *arguments) in self.holding:
@@ -113,7 +115,6 @@ class Plan:
         with locks.alone(self.places) as undisturbed:
             if not undisturbed:  # `locks.begin_run` will say so
                 return None
-            self.places.again.unlink(missing_ok=True)
             hashes = manifest.Hashes(self.places.folder)
             reasons: dict[str, list[str]] = {}
             for file in sorted(self.places.manifest("x").parent.glob("*.sha256")):
@@ -121,6 +122,9 @@ class Plan:
         holding = reasons.pop("", [])
         for why, jobs in reasons.items():
             say(f"{why}; to be made again: {', '.join(jobs)}")
+        # Its content is new too, for Snakemake compares the checksums of small files.
+        self.places.again.write_text(str(time.time_ns()))
+        os.utime(self.places.again, (_FAR_FUTURE, _FAR_FUTURE))
         return frozenset(holding)
 
     def _why(self, file: Path, hashes: manifest.Hashes) -> str:
@@ -168,8 +172,8 @@ def _named(places: Places, faults: Mapping[str, str]) -> str:
 def _files(stage: str, *arguments: str) -> tuple[list[Path], list[Path]]:
     """Return committed files that a job uses, and modules that it imports but does not use.
 
-    `gearmesh.reproduction.claims.checking` imports the checks of all figures; a figure depends on its
-    own, and on what these import.
+    `gearmesh.reproduction.claims.checking` imports the checks of all figures; a figure depends on
+    its own, and on what these import.
     """
     if stage == "figure" or stage == "printed":
         [figure] = arguments or ["printed"]

@@ -1,8 +1,8 @@
 """Compute the cases of a letter of Tab. 1.
 
-Case files that are still as the manifest says are kept if they are cases of this study. Where only the attributes of a file are out of date (a parameter
-changed that this case does not depend on), it is written again with what it holds. All others are
-integrated.
+Case files that are still as the manifest says are kept if they are cases of this study. Where only
+the attributes of a file are out of date (a parameter changed that this case does not depend on),
+it is written again with what it holds. All others are integrated.
 """
 
 import time
