@@ -144,7 +144,7 @@ class Project:
             for path in sorted(self.study.rglob("*"))
             if path.is_file()
             and path.parent.name not in ("logs", "benchmarks")
-            and path.name not in (".run.lock", ".jobs.lock")
+            and path.name not in (".run.lock", ".jobs.lock", ".again")
         }
 
 
