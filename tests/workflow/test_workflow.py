@@ -42,7 +42,9 @@ def test_everything_that_the_contract_lists_is_there(smoke):
 
 
 def test_a_run_leaves_nothing_temporary(smoke):
-    assert not [path for path in smoke.study.rglob(".*") if path.suffix != ".lock" and path.name != ".again"]
+    assert not [
+        path for path in smoke.study.rglob(".*") if path.suffix != ".lock" and path.name != ".again"
+    ]
 
 
 def test_sha256sum_checks_all_results(smoke):
@@ -136,7 +138,8 @@ REPORTED = {"report", "hashes", "verdict"}
 INCREMENTS = {
     "README": ("README.md", "#", "# more\n#", set()),
     "comment": ("config/paper.yaml", "contact_ratio", "# more\ncontact_ratio", set()),
-    "plot": ("src/gearmesh/reproduction/figures/fig2.py", '"""Fig. 2', '"""Figure 2', {"fig2", *END}),
+    "plot": ("src/gearmesh/reproduction/figures/fig2.py", "Fig. 2", "Figure 2",
+             {"fig2", *END}),
     "notebook": ("notebooks/fig3.ipynb", "## What is seen", "## Seen", {"fig3", *END}),
     "check": ("src/gearmesh/reproduction/claims/fig3.py", '"""', '"""About it: ', {"fig3", *END}),
     "shared check": ("src/gearmesh/reproduction/claims/fig5.py", '"""', '""" ',
