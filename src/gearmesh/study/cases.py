@@ -114,11 +114,24 @@ class Plan(Section):
 
 @dataclass(frozen=True, slots=True)
 class Case:
-    """One run of a study."""
+    """One run of a study.
+
+    Attributes
+    ----------
+    variant : Variant
+        Which damping terms act where.
+    nu : float
+        Mesh frequency ν_s.
+    time_course : bool
+        Whether its file holds the time course.
+    direction : {"up", "down"}, optional
+        In a sweep, the direction in which runs follow one another.
+    """
 
     variant: Variant
     nu: float
     time_course: bool = False
+    direction: str | None = None
 
 
 @dataclass(frozen=True)
@@ -177,7 +190,10 @@ class Study:
         cases = []
         for chosen, nus in self.plan.frequencies():
             courses = set(self.time_courses.get(chosen.name, ()))
-            cases += [Case(chosen, nu, nu in courses) for nu in sorted({*nus, *courses})]
+            cases += [
+                Case(chosen, nu, nu in courses, self.plan.direction)
+                for nu in sorted({*nus, *courses})
+            ]
         return tuple(cases)
 
     def has_file(self, case: Case) -> bool:
