@@ -4,8 +4,8 @@ from pathlib import Path
 
 import numpy as np
 
-from gearmesh.model.damping import variant
-from gearmesh.model.motion import Problem
+from gearmesh.model.problem import Problem
+from gearmesh.model.variants import variant
 from gearmesh.study.loading import load_study
 
 LETTERS = "bcd"

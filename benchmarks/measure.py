@@ -10,7 +10,7 @@ import numpy as np
 from benchmarks.outcome import deviation
 from benchmarks.peers import Solve
 from benchmarks.reference import Reference
-from gearmesh.model.motion import Problem
+from gearmesh.model.problem import Problem
 
 AIM = 1e-9
 """Error, in static deflections, at which solvers are compared."""

@@ -17,7 +17,7 @@ from functools import lru_cache
 from itertools import pairwise
 from math import sqrt, tan
 
-from gearmesh.model.motion import Problem
+from gearmesh.model.problem import Problem
 
 ROUNDING = 1e-12
 """A switch this close to the start of the period, in periods, stands at it."""

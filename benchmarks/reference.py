@@ -12,7 +12,7 @@ from dataclasses import dataclass
 
 from benchmarks.outcome import Outcome, deviation
 from benchmarks.peers.heyoka_scalar import solve_accurately
-from gearmesh.model.motion import Problem
+from gearmesh.model.problem import Problem
 
 DISPLACEMENT = 1e-9
 SENSITIVE = 1e3

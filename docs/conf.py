@@ -1,7 +1,10 @@
 """How Sphinx builds this site; `make docs` runs it. Nothing here needs a network."""
 
+import re
 import sys
 from pathlib import Path
+
+from sphinx.application import Sphinx
 
 import gearmesh
 
@@ -33,6 +36,7 @@ nb_execution_in_temp = True
 nb_execution_raise_on_error = True
 nb_execution_timeout = 180
 nb_merge_streams = True
+nb_render_markdown_format = "myst"
 
 # Reference: what the docstrings say.
 default_role = "code"  # `name` in a docstring is code
@@ -58,3 +62,13 @@ html_static_path = ["_static"]
 html_css_files = ["site.css"]
 html_copy_source = False
 html_show_sphinx = False
+
+
+def keep_bars(app: Sphinx, kind: str, name: str, obj: object, options: object, lines: list[str]):
+    """Take |v| in a docstring as an absolute value, where reStructuredText sees a reference."""
+    lines[:] = [re.sub(r"\|([^|`]+)\|", r"\\|\1\\|", line) for line in lines]
+
+
+def setup(app: Sphinx) -> None:
+    """Register what Sphinx calls for each docstring."""
+    app.connect("autodoc-process-docstring", keep_bars)

@@ -1,12 +1,15 @@
-"""One run to vary, shared by the tests of the solvers."""
+"""Runs to vary, shared by the tests of the solvers."""
 
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 
-from gearmesh.model.damping import VARIANTS
-from gearmesh.model.motion import Problem
+from gearmesh.model.problem import Problem
+from gearmesh.model.variants import VARIANTS, variant
+from gearmesh.study.loading import load_study
 
+PAPER = Path(__file__).parents[1] / "config" / "paper.yaml"
 MEAN = 3.28954
 POWERS = (0.12336, 0.24672, 0.49344)
 
@@ -34,3 +37,8 @@ def problem(nu=0.7, name="c-lubricant", **changes) -> Problem:
         base_radius=3000.0,
     )
     return replace(plain, **changes)
+
+
+def of_paper(name: str, nu: float, **changes: object) -> Problem:
+    """Return a run of the paper's study with other parameters, in the units of the study."""
+    return load_study(PAPER).pair.replace(**changes).problem(variant(name), nu)

@@ -9,7 +9,7 @@ import pytest
 import xarray as xr
 
 from gearmesh import __version__
-from gearmesh.model.damping import VARIANTS
+from gearmesh.model.variants import VARIANTS
 
 
 @pytest.fixture

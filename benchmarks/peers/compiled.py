@@ -9,7 +9,7 @@ import numpy as np
 from numba import njit
 
 from benchmarks.reduced import Piece, support
-from gearmesh.model.motion import Problem
+from gearmesh.model.problem import Problem
 
 STIFFNESS, OFFSET, SHARE, K1, K2, K3, SUPPORT, SUPPORT_DAMPING, SUPPORT_STIFFNESS = range(9)
 """Places in the array that the right-hand side reads."""

@@ -27,7 +27,7 @@ from benchmarks.peers.heyoka_system import (
     scaled,
 )
 from benchmarks.reduced import Piece, Terms, initial_state, periods, pieces_of, terms
-from gearmesh.model.motion import Problem
+from gearmesh.model.problem import Problem
 
 LANES = hy.recommended_simd_size()
 

@@ -28,7 +28,7 @@ from benchmarks.peers.heyoka_system import (
     scaled,
 )
 from benchmarks.reduced import Terms, initial_state, periods, pieces_of, terms
-from gearmesh.model.motion import Problem
+from gearmesh.model.problem import Problem
 
 
 def solve(problems: Sequence[Problem], tolerance: float) -> list[Outcome]:

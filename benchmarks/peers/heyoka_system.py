@@ -11,7 +11,7 @@ from typing import NamedTuple
 import heyoka as hy
 
 from benchmarks.reduced import Piece, Terms, support
-from gearmesh.model.motion import Problem
+from gearmesh.model.problem import Problem
 
 (
     LOAD,

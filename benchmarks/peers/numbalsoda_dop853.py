@@ -25,7 +25,7 @@ from benchmarks.peers.compiled import (
     slope,
 )
 from benchmarks.reduced import initial_state, periods, pieces_of
-from gearmesh.model.motion import Problem
+from gearmesh.model.problem import Problem
 
 EARLY_POINTS = 64
 """Grid points a period where no samples are kept: dense enough for the quintic."""

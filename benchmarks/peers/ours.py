@@ -4,7 +4,7 @@ from collections.abc import Sequence
 
 from benchmarks.outcome import SAMPLES_PER_PERIOD, Outcome
 from benchmarks.reduced import periods
-from gearmesh.model.motion import Problem
+from gearmesh.model.problem import Problem
 from gearmesh.solvers.simulation import simulate
 
 

@@ -20,7 +20,7 @@ from benchmarks.peers.compiled import (
     slope,
 )
 from benchmarks.reduced import initial_state, periods, pieces_of
-from gearmesh.model.motion import Problem
+from gearmesh.model.problem import Problem
 
 
 def solve(problems: Sequence[Problem], steps_per_period: float) -> list[Outcome]:

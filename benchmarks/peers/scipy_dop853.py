@@ -19,7 +19,7 @@ from benchmarks.peers.compiled import (
     set_regime,
 )
 from benchmarks.reduced import initial_state, periods, pieces_of
-from gearmesh.model.motion import Problem
+from gearmesh.model.problem import Problem
 
 SHORTEST = 1e-9
 """No turning point this soon after a start counts: it is the one that ended the last part."""

@@ -6,11 +6,12 @@ In the sources and on a terminal the underscore stays. Code is left alone.
 import re
 
 from docutils import nodes
+from sphinx import addnodes
 from sphinx.application import Sphinx
 from sphinx.transforms import SphinxTransform
 
-SYMBOL = re.compile(r"(?<![\w.])([A-Za-zΑ-Ωα-ωℓ])_([A-Za-z]{1,4}\d?m?|\d)(?![\w(])")
-LEFT_ALONE = (nodes.literal, nodes.FixedTextElement, nodes.math, nodes.raw)
+SYMBOL = re.compile(r"(?<![\w.])([A-Za-zΑ-Ωα-ωℓ])_([A-Za-z]{1,4}\d?m?|\dm?)(?![\w(])")
+CODE = (addnodes.desc_signature, nodes.FixedTextElement, nodes.literal, nodes.math, nodes.raw)
 
 
 class Subscripts(SphinxTransform):
@@ -27,7 +28,7 @@ class Subscripts(SphinxTransform):
 
 def _within_code(node: nodes.Node) -> bool:
     while node := node.parent:
-        if isinstance(node, LEFT_ALONE) or "addnodes" in type(node).__module__:
+        if isinstance(node, CODE):
             return True
     return False
 

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from gearmesh.interface.runs import simulate as simulate
     from gearmesh.interface.runs import sweep as sweep
     from gearmesh.interface.statements import paper as paper
-    from gearmesh.study.loading import load
+    from gearmesh.study.loading import load_study as load
     from gearmesh.study.pair import Pair as Pair
 
 __version__ = "0.2.0"

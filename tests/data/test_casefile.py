@@ -10,7 +10,7 @@ import xarray as xr
 
 from gearmesh.data import casefile
 from gearmesh.errors import InputError
-from gearmesh.model.damping import variant
+from gearmesh.model.variants import variant
 from gearmesh.solvers import simulation as integrator
 from gearmesh.solvers.response import Response
 from gearmesh.study.cases import Case

@@ -27,19 +27,16 @@ SHELL = ("", "sh", "bash", "console")
 SHOWN = ("text", "yaml")
 """Kinds that are only read: files, output, and code that belongs into a file."""
 
+PAPER = "results/paper"
+
 ELSEWHERE = {
     "make reproduce": "tests/workflow/test_workflow.py runs the same targets on a small study",
     "make test": "runs this test",
-    "make test-fast": "a part of make test",
     "make lint": ".ci/run runs it",
     "make docs": ".ci/run runs it",
-    "make bench": "tests/solvers/test_peers.py runs the peers",
-    "make verify": "minutes; tests/solvers/test_peers.py compares with heyoka",
-    "make identify": "tests/identification/test_identification_runs.py runs it on a small design",
-    ".venv/bin/pre-commit install": "changes the repository's hooks",
-    ".venv/bin/snakemake": "as make reproduce",
+    "make identify": "tests/identification/test_identification_runs.py runs a small design",
+    ".venv/bin/pre-commit install": "changes the hooks of the repository that it runs in",
     ".venv/bin/snakemake --profile profiles/slurm": "tests/workflow/test_slurm.py runs it",
-    ".venv/bin/snakemake --report report.html": "needs the results of make reproduce",
 }
 """Commands that do not run here, each with what runs it instead."""
 
@@ -98,10 +95,16 @@ def needs_running(page: str) -> bool:
     )
 
 
-@pytest.mark.parametrize("page", filter(needs_running, PAGES))
-def test_what_a_page_prints_works_as_printed(page: str, tmp_path: Path) -> None:
+@pytest.mark.parametrize("page", [page for page in PAGES if needs_running(page)])
+def test_what_a_page_prints_works_as_printed(
+    page: str, tmp_path: Path, request: pytest.FixtureRequest
+) -> None:
     project = Project.create(tmp_path / "project", "config/paper.yaml")
     project.path(".venv").symlink_to(sys.prefix)
+    if any(block.kind == "python" and PAPER in block.code for block in blocks(page)):
+        smoke = request.getfixturevalue("smoke")  # the paper's study, only smaller
+        project.path(PAPER).parent.mkdir()
+        project.path(PAPER).symlink_to(smoke.path("results/smoke"))
     python = []
     for block in blocks(page):
         if block.kind == "yaml" and (name := re.match(r"# (\S+\.yaml)\n", block.code)):

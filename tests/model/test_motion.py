@@ -10,10 +10,15 @@ from hypothesis import strategies as st
 from problems import problem
 
 from gearmesh.model import motion
-from gearmesh.model.motion import (
+from gearmesh.model.contact import (
     CONTACT_LOSS,
     INVERSE_MESH,
     NORMAL_MESH,
+    dynamic_force,
+    elastic_force,
+    regime_of,
+)
+from gearmesh.model.motion import (
     ROTATION_2,
     ROTATION_3,
     Y_2,
@@ -25,6 +30,7 @@ from gearmesh.model.motion import (
     relative_motion,
     static_equilibrium,
 )
+from gearmesh.model.problem import State
 
 PLAIN = problem(friction_coefficient=0.0, bearing_damping_ratio=0.0, lubricant=(0.0, 0.0, 0.0))
 RUN_OUT = replace(
@@ -80,7 +86,7 @@ def test_forces_are_the_gradient_of_the_energy(seed, one, time):
     rng = np.random.default_rng(seed)
     q = rng.normal(size=6)
     mode = Mode(NORMAL_MESH, motion.mesh_phase(one, time))
-    c = motion.mesh_stiffness(one, mode.stretch)
+    c = motion.mesh_stiffness(one, mode.segment)
 
     def potential(q):
         # The damping of eq. (7) is off, so the velocity does not matter.
@@ -118,8 +124,8 @@ def test_reduced_mass_and_sum_coordinates():
     ],
 )
 def test_regimes(y, regime, depth):
-    assert motion.regime_of(PLAIN, y) == regime
-    assert motion.elastic_force(PLAIN, y, 1.2, regime) == pytest.approx(1.2 * depth)
+    assert regime_of(y, PLAIN.backlash) == regime
+    assert elastic_force(y, 1.2, regime, PLAIN.backlash) == pytest.approx(1.2 * depth)
     a = accelerations(PLAIN, at_phase(PLAIN, DOUBLE), pressed(y), STILL)
     assert 2.0 * a[ROTATION_3] == pytest.approx(1.0 - PLAIN.stiffness_max * depth)
 
@@ -249,8 +255,8 @@ def test_run_out_changes_the_lever_of_the_normal_force():
 
 
 def test_dynamic_force_of_eq_2():
-    assert motion.dynamic_force(0.5, 1.2) == pytest.approx(0.6)
-    assert motion.dynamic_force(-0.5, 1.2) == pytest.approx(-0.6)
+    assert dynamic_force(0.5, 1.2) == pytest.approx(0.6)
+    assert dynamic_force(-0.5, 1.2) == pytest.approx(-0.6)
 
 
 def test_static_equilibrium_under_the_mean_stiffness():
@@ -268,10 +274,10 @@ def test_the_start_takes_run_out_and_phase_into_account():
 
 
 def test_a_given_start():
-    given_start = replace(PLAIN, initial_state=(1.5, 0.1, -0.5, 0.2))
+    given_start = replace(PLAIN, initial_state=State(1.0, 0.3, -0.5, 0.2))
     q, v = motion.start(given_start)
-    assert motion.sum_and_difference(q, v) == (1.5, 0.1, -0.5, 0.2)
     y, rate = relative_motion(given_start, 0.0, q, v)
     assert (y, rate) == (pytest.approx(1.0), pytest.approx(0.3))
+    assert (q[Y_3] - q[Y_2], v[Y_3] - v[Y_2]) == (-0.5, 0.2)
     assert q[ROTATION_3] == q[ROTATION_2]
     assert q[Y_3] == -q[Y_2]

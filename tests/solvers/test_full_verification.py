@@ -10,7 +10,8 @@ import pytest
 from independent import integrate as integrate_independently
 from problems import problem
 
-from gearmesh.model.motion import INVERSE_MESH, Problem
+from gearmesh.model.contact import INVERSE_MESH
+from gearmesh.model.problem import Problem
 from gearmesh.solvers.full.runs import integrate
 
 RUN_OUT = {"eccentricity_3": 0.5, "eccentricity_2": 0.3, "eccentricity_angle": 1.0}

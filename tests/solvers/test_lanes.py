@@ -5,7 +5,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from numba import njit
 
-from gearmesh.solvers import lanes
+from gearmesh.solvers.lanes import operations, rows
 
 NUMBERS = st.floats(-1e100, 1e100, allow_nan=False)
 EIGHT = st.lists(NUMBERS, min_size=8, max_size=8).map(np.array)
@@ -13,27 +13,27 @@ EIGHT = st.lists(NUMBERS, min_size=8, max_size=8).map(np.array)
 
 @njit
 def _arithmetic(like, a, b, out):
-    a, b, out = lanes.pointer_to(a), lanes.pointer_to(b), lanes.pointer_to(out)
-    x = lanes.load(like, a, 0)
-    y = lanes.load(like, b, 0)
-    lanes.store(out, 0, x + y)
-    lanes.store(out, 1, x - y)
-    lanes.store(out, 2, x * y)
-    lanes.store(out, 3, x / y)
-    lanes.store(out, 4, -x)
-    lanes.store(out, 5, lanes.magnitude(x))
-    lanes.store(out, 6, lanes.select((x < y) & ~(x == y), x * 2.0, 3.0 - y))
-    lanes.store(out, 7, lanes.lane_numbers(like))
+    a, b, out = rows.pointer_to(a), rows.pointer_to(b), rows.pointer_to(out)
+    x = rows.load(like, a, 0)
+    y = rows.load(like, b, 0)
+    rows.store(out, 0, x + y)
+    rows.store(out, 1, x - y)
+    rows.store(out, 2, x * y)
+    rows.store(out, 3, x / y)
+    rows.store(out, 4, -x)
+    rows.store(out, 5, operations.magnitude(x))
+    rows.store(out, 6, operations.select((x < y) & ~(x == y), x * 2.0, 3.0 - y))
+    rows.store(out, 7, operations.lane_numbers(like))
 
 
 @njit
 def _arithmetic8(a, b, out):
-    _arithmetic(lanes.zeros8(), a, b, out)
+    _arithmetic(operations.zeros8(), a, b, out)
 
 
 @njit
 def _arithmetic1(a, b, out):
-    _arithmetic(lanes.zeros1(), a, b, out)
+    _arithmetic(operations.zeros1(), a, b, out)
 
 
 @given(EIGHT, EIGHT)
@@ -57,9 +57,9 @@ def test_a_lane_knows_nothing_of_the_others(a, b, lane):
 
 @njit
 def _bits(a, b):
-    like = lanes.zeros8()
-    mask = lanes.load(like, lanes.pointer_to(a), 0) < lanes.load(like, lanes.pointer_to(b), 0)
-    return lanes.lane_bits(mask), lanes.any_lane(mask)
+    like = operations.zeros8()
+    mask = rows.load(like, rows.pointer_to(a), 0) < rows.load(like, rows.pointer_to(b), 0)
+    return operations.lane_bits(mask), operations.any_lane(mask)
 
 
 @given(EIGHT, EIGHT)
@@ -71,7 +71,7 @@ def test_masks_become_bits(a, b):
 
 @njit
 def _lowest(bits):
-    return lanes.lowest_bit(bits)
+    return operations.lowest_bit(bits)
 
 
 @given(st.integers(1, 255))
@@ -81,11 +81,11 @@ def test_lowest_bit(bits):
 
 @njit
 def _coarse(a, out):
-    like = lanes.zeros8()
-    x = lanes.load(like, lanes.pointer_to(a), 0)
-    out = lanes.pointer_to(out)
-    lanes.store(out, 0, lanes.coarse_log2(x))
-    lanes.store(out, 1, lanes.coarse_exp2(lanes.coarse_log2(x)))
+    like = operations.zeros8()
+    x = rows.load(like, rows.pointer_to(a), 0)
+    out = rows.pointer_to(out)
+    rows.store(out, 0, operations.coarse_log2(x))
+    rows.store(out, 1, operations.coarse_exp2(operations.coarse_log2(x)))
 
 
 @given(st.lists(st.floats(1e-290, 1e290), min_size=8, max_size=8).map(np.array))
@@ -94,15 +94,15 @@ def test_coarse_logarithm_is_within_its_bound_and_inverted(a):
     _coarse(a, out)
     exact = np.log2(a)
     assert (out[:8] <= exact + 1e-12 * abs(exact) + 1e-12).all()
-    assert (out[:8] >= exact - lanes.COARSENESS).all()
+    assert (out[:8] >= exact - operations.COARSENESS).all()
     np.testing.assert_allclose(out[8:], a, rtol=1e-12)
 
 
 @njit
 def _rows(source, target):
-    like = lanes.zeros8()
-    lanes.store(lanes.pointer_to(target), 1, lanes.load(like, lanes.pointer_to(source), 2))
-    lanes.store_at(target, 19, lanes.spread(like, 7.0))
+    like = operations.zeros8()
+    rows.store(rows.pointer_to(target), 1, rows.load(like, rows.pointer_to(source), 2))
+    rows.store_at(target, 19, operations.spread(like, 7.0))
 
 
 def test_rows_and_places_of_an_array():

@@ -14,7 +14,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from gearmesh.model.damping import VARIANTS, variant
+from gearmesh.model.variants import VARIANTS, variant
 from gearmesh.study.loading import load_study
 
 pytest.importorskip(
@@ -32,22 +32,20 @@ AGREEMENT = 1e-8
 TIGHT = 1e-13
 
 
-PARAMETERS = load_study(ROOT / "config" / "paper.yaml").pair.replace(
-    {
-        "assumed.backlash": "40 um",
-        "assumed.damping_length": "5 um",
-        "assumed.body_mass": "100 kg",
-        "assumed.bearing_stiffness": "3.29e5 N/mm",
-        "assumed.bearing_damping_ratio": 0.03,
-        "assumed.friction_coefficient": 0.05,
-        "assumed.initial_phase": 0,
-    }
+PAIR = load_study(ROOT / "config" / "paper.yaml").pair.replace(
+    backlash="40 um",
+    damping_length="5 um",
+    body_mass="100 kg",
+    bearing_stiffness="3.29e5 N/mm",
+    bearing_damping_ratio=0.03,
+    friction_coefficient=0.05,
+    initial_phase=0,
 )
 """Assumptions of their own, so that what the study assumes can change."""
 
 
 def problem(name, nu, **changes):
-    return replace(PARAMETERS.problem(variant(name), nu), **changes)
+    return replace(PAIR.problem(variant(name), nu), **changes)
 
 
 GRAZING = problem("c-material", 0.857039)

@@ -2,6 +2,7 @@
 
 import subprocess
 import sys
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -10,8 +11,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from problems import problem
 
-from gearmesh.model.damping import VARIANTS
-from gearmesh.model.motion import CONTACT_LOSS, INVERSE_MESH, NORMAL_MESH
+from gearmesh.model.contact import CONTACT_LOSS, INVERSE_MESH, NORMAL_MESH
+from gearmesh.model.problem import State
+from gearmesh.model.variants import VARIANTS
 from gearmesh.solvers import simulation as integrator
 from gearmesh.solvers.response import MAXIMUM, Response, Samples
 from gearmesh.solvers.simulation import simulate
@@ -69,8 +71,10 @@ def test_samples_and_error_estimates_change_nothing_else(singles):
 
 
 def test_whole_periods_shift_nothing():
-    whole = simulate([problem(initial_phase=1.0)])[0]
-    assert_same(whole, simulate([problem(initial_phase=0.0)])[0])
+    shifted, plain = (simulate([problem(initial_phase=phase)])[0] for phase in (1.0, 0.0))
+    for response in (shifted, plain):  # the branches name the problem, and so the phase
+        response.final_state = replace(response.final_state, branches=None)
+    assert_same(shifted, plain)
 
 
 def test_a_run_goes_on_where_another_ended():
@@ -117,7 +121,7 @@ def test_a_tolerance_that_decides_no_step_still_estimates_errors():
     )
     assert chaotic.sensitive
     assert 0.0 < steady.y_max_error < 1e-5
-    # Short stretches, no damping: each displacement of the start grows a billion times.
+    # Short segments, no damping: each displacement of the start grows a billion times.
     growing = problem(
         2.2596,
         "a-conservative",
@@ -196,7 +200,7 @@ def test_grazing_inside_a_step_is_not_missed():
             friction_coefficient=0.0,
             body_mass=1e12,
             bearing_damping_ratio=0.0,
-            initial_state=(4.0 + low, 0.0, -2.0, 0.0),
+            initial_state=State(2.0 + low, 0.0, -2.0, 0.0),
             revolutions=1,
         )
         response = simulate([orbit], tolerance=1e-15)[0]
@@ -218,7 +222,7 @@ def test_energy_is_conserved_through_both_flanks():
         backlash=1.5,
         body_mass=1e12,
         bearing_damping_ratio=0.0,
-        initial_state=(6.0, 0.0, -2.0, 0.0),
+        initial_state=State(4.0, 0.0, -2.0, 0.0),
     )
     response = simulate([orbit], tolerance=1e-12, samples_per_period=64)[0]
     y, v = response.samples.y, response.samples.v

@@ -106,7 +106,7 @@ def _pair_options() -> _Parser:
     return options
 
 
-def _add_runs(commands: argparse._SubParsersAction, pair: _Parser) -> None:
+def _add_runs(commands: "argparse._SubParsersAction[_Parser]", pair: _Parser) -> None:
     run = _Parser(add_help=False)
     run.add_argument("--revolutions", metavar="N", help="revolutions that are run")
     run.add_argument("--kept", metavar="N", help="last revolutions that are kept")
@@ -144,7 +144,7 @@ def _add_runs(commands: argparse._SubParsersAction, pair: _Parser) -> None:
     sweep.set_defaults(run=_command("runs", "sweep"))
 
 
-def _add_pictures(commands: argparse._SubParsersAction) -> None:
+def _add_pictures(commands: "argparse._SubParsersAction[_Parser]") -> None:
     plot = commands.add_parser(
         "plot", help="draw phase plane, time course and stroboscopic points of a run"
     )
@@ -173,7 +173,7 @@ def _add_pictures(commands: argparse._SubParsersAction) -> None:
     compare.set_defaults(run=_command("pictures", "compare"))
 
 
-def _add_tables(commands: argparse._SubParsersAction, pair: _Parser) -> None:
+def _add_tables(commands: "argparse._SubParsersAction[_Parser]", pair: _Parser) -> None:
     variants = commands.add_parser("variants", help="list the damping variants of Tab. 1")
     variants.set_defaults(run=_command("tables", "variants"))
 

@@ -8,7 +8,7 @@ from pathlib import Path
 from gearmesh.commands.tables import load_pair
 from gearmesh.data.writing import replacing
 from gearmesh.errors import InputError
-from gearmesh.model.damping import variant
+from gearmesh.model.variants import variant
 from gearmesh.study.frequencies import MAX_CASES, read_nu
 from gearmesh.study.pair import Pair
 

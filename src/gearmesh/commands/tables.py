@@ -29,7 +29,7 @@ def load_pair(options: argparse.Namespace) -> Pair:
 
 def variants(options: argparse.Namespace) -> int:
     """Print Tab. 1."""
-    from gearmesh.model.damping import VARIANTS
+    from gearmesh.model.variants import VARIANTS
 
     head = ("name", "mark", "k1", "k2", "k3", "k1m", "k2m", "k3m", "damping")
     rows = [

@@ -20,7 +20,7 @@ from gearmesh.data import batches, casefile
 from gearmesh.data.batches import Content
 from gearmesh.data.casefile import FIELDS, Field
 from gearmesh.errors import InputError
-from gearmesh.model.damping import Variant
+from gearmesh.model.variants import Variant
 from gearmesh.study.cases import Study
 
 NOT_COMPUTED = -1

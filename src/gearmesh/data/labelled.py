@@ -2,12 +2,15 @@
 
 import json
 from collections.abc import Mapping, Sequence
+from dataclasses import asdict
+from typing import Any
 
 import numpy as np
 import xarray as xr
 
 from gearmesh.data.casefile import FIELDS, SAMPLE_FIELDS, Field, Record, attributes, record
 from gearmesh.errors import InputError
+from gearmesh.model.problem import Branches, Problem, State
 from gearmesh.solvers.response import Response
 from gearmesh.study.cases import Case
 from gearmesh.study.pair import Pair
@@ -34,7 +37,7 @@ def run_dataset(response: Response, pair: Pair, case: Case) -> xr.Dataset:
     The samples have the dimension and coordinate ``time``, so ``ds.y.plot()`` works.
     """
     columns = record(response, pair)
-    stated = attributes(pair, case) | {_FINAL_STATE: json.dumps(response.final_state)}
+    stated = attributes(pair, case) | {_FINAL_STATE: _written(response.final_state)}
     dataset = xr.Dataset(attrs=stated)
     for field in (*FIELDS, *SAMPLE_FIELDS):
         if field.name in columns:
@@ -44,7 +47,12 @@ def run_dataset(response: Response, pair: Pair, case: Case) -> xr.Dataset:
     return dataset.set_coords("time") if "time" in dataset else dataset
 
 
-def final_state(dataset: xr.Dataset) -> tuple[float, ...]:
+def _written(state: State | None) -> str:
+    """Write the state at the end of a run as JSON, which holds every bit of a float."""
+    return json.dumps(None if state is None else asdict(state))
+
+
+def final_state(dataset: xr.Dataset) -> State:
     """Return the state at the end of the run that a dataset holds.
 
     Raises
@@ -52,10 +60,22 @@ def final_state(dataset: xr.Dataset) -> tuple[float, ...]:
     InputError
         If the dataset holds no run, or one that failed.
     """
-    state = json.loads(dataset.attrs.get(_FINAL_STATE, "null"))
+    state = _with_tuples(json.loads(dataset.attrs.get(_FINAL_STATE, "null")))
     if state is None:
         raise InputError("start: the dataset holds no run that came to its end")
-    return tuple(state)
+    branches = state.pop("branches")
+    if branches is not None:
+        branches = Branches(**branches | {"problem": Problem(**branches["problem"])})
+    return State(**state, branches=branches)
+
+
+def _with_tuples(value: Any) -> Any:
+    """Replace the lists of JSON by tuples, which compare equal to what was written."""
+    if isinstance(value, list):
+        return tuple(map(_with_tuples, value))
+    if isinstance(value, dict):
+        return {key: _with_tuples(item) for key, item in value.items()}
+    return value
 
 
 def _twins(field: Field, columns: Record) -> list[tuple[str, np.ndarray, dict[str, object]]]:

@@ -14,9 +14,9 @@ from importlib.metadata import version
 from pathlib import Path
 
 import gearmesh
+from gearmesh.solvers import sources as solver_sources
 
 _PACKAGE = Path(gearmesh.__file__).parent
-_LIBRARIES = ("numba", "numpy")
 _MAY_HOLD_IMPORTS = (ast.stmt, ast.ExceptHandler, ast.match_case)
 
 
@@ -58,14 +58,15 @@ def digest(files: Iterable[Path]) -> str:
 @cache
 def physics_digest() -> str:
     """Return the SHA-256 of all sources that decide what a run gives."""
-    solver = module("solvers/simulation")
-    return digest([solver, *sources(solver)])
+    return solver_sources.digest()
 
 
 @cache
 def versions() -> dict[str, str]:
     """Return the versions of this package and of the libraries that decide the numbers."""
-    return {"gearmesh": gearmesh.__version__} | {name: version(name) for name in _LIBRARIES}
+    return {"gearmesh": gearmesh.__version__} | {
+        name: version(name) for name in solver_sources.LIBRARIES
+    }
 
 
 @cache

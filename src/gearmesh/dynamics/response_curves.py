@@ -11,7 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from gearmesh.dynamics.refinement import Batch, refine_change, refine_peak, refine_step
-from gearmesh.model.motion import Problem
+from gearmesh.model.problem import Problem
 from gearmesh.solvers.response import Response
 from gearmesh.solvers.simulation import simulate
 

@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 from itertools import zip_longest
 
-from gearmesh.model.motion import Problem
+from gearmesh.model.problem import Problem
 from gearmesh.solvers.response import Response
 from gearmesh.solvers.simulation import simulate
 

@@ -13,8 +13,9 @@ import numpy as np
 
 from gearmesh.dynamics.response_curves import ResponseCurve
 from gearmesh.identification.design import Sample, pair_of
-from gearmesh.model.damping import variant
-from gearmesh.model.motion import Problem
+from gearmesh.model.motion import state_at
+from gearmesh.model.problem import Problem, State
+from gearmesh.model.variants import variant
 from gearmesh.reproduction.thresholds import FIRST, LAST, LOOPS_FROM
 from gearmesh.solvers.response import Response
 from gearmesh.solvers.simulation import simulate
@@ -75,7 +76,8 @@ class SampledCurve(ResponseCurve):
         self._stated = pair.problem(variant(name), FIRST)
         self._samples_per_period = pair.samples_per_period
         self._kind = sample["kind"]
-        self._velocity = float(sample["initial_velocity"])
+        velocity = float(sample["initial_velocity"])
+        self._start = state_at(self._stated, v=velocity) if velocity else None
         self.grid = scan_of(name)
         if self._kind == "down":
             self.grid = self.grid[::-1]
@@ -104,12 +106,9 @@ class SampledCurve(ResponseCurve):
     def problem(self, nu: float) -> Problem:
         """State the run at one ν_s, which in a sweep starts where its neighbour has ended."""
         start = self._neighbours_end(nu) if self.swept else None
-        if start is None and self._velocity:
-            deflection = -2.0 / self._stated.bearing_stiffness
-            start = (1.0 - deflection, self._velocity, deflection, 0.0)
-        return replace(self._stated, nu=nu, initial_state=start)
+        return replace(self._stated, nu=nu, initial_state=start or self._start)
 
-    def _neighbours_end(self, nu: float) -> tuple[float, float, float, float] | None:
+    def _neighbours_end(self, nu: float) -> State | None:
         """Return the state at the end of the run before `nu` in the sweep, if there is one."""
         passed = self.grid < nu if self._kind == "up" else self.grid > nu
         known = self._known.get(float(self.grid[passed][-1])) if passed.any() else None

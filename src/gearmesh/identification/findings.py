@@ -1,8 +1,9 @@
 """Everything that the samples tell, as one plain mapping: what `config/identified.yaml` holds."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 
@@ -12,6 +13,7 @@ from gearmesh.identification.inference import ENOUGH, Fit, effective_size
 from gearmesh.identification.settings import KINDS, Settings
 from gearmesh.identification.store import Samples
 from gearmesh.identification.wording import (
+    Statement,
     statements,
     weight_of_claims,
 )
@@ -92,7 +94,7 @@ class Analysis:
     settings: Settings
 
     @cached_property
-    def stated(self):
+    def stated(self) -> list[Statement]:
         """What the claims state."""
         return statements(self.ledger, self.settings.wordings)
 
@@ -130,7 +132,7 @@ class Analysis:
                 tuple(pattern): effective_size(family.prior * np.prod(weight[pattern], axis=0))
                 for pattern in patterns[counts == count]
             }
-            best = max(sizes, key=sizes.get)
+            best = max(sizes, key=lambda pattern: sizes[pattern])
             if sizes[best] >= ENOUGH:
                 return [name for name, kept in zip(self.claims, best, strict=True) if kept]
         return self.claims
@@ -169,7 +171,7 @@ def findings(analysis: Analysis) -> dict[str, object]:
 def claims_table(analysis: Analysis, survey: Family, natural: Family) -> dict[str, object]:
     """Return for each claim where it holds: shares of the plausible space, and what it costs."""
     even = analysis.samples.of(SURVEY)
-    found = {}
+    found: dict[str, Any] = {}
     held_even, held_natural = analysis.held(even), analysis.held(natural.samples)
     held = analysis.held(survey.samples)
     evidence = analysis.evidence(survey)
@@ -246,7 +248,7 @@ def sensitivities(analysis: Analysis) -> dict[str, object]:
     """Return for each threshold the say of each factor, over the plausible space."""
     even = analysis.samples.of(SURVEY)
     factors = analysis.settings.designs[SURVEY].vary
-    found = {}
+    found: dict[str, Any] = {}
     for column in _threshold_columns(even):
         values = even.measured[column]
         found[column] = {}
@@ -347,7 +349,7 @@ def beside(analysis: Analysis) -> dict[str, object]:
     samples = analysis.samples.of(BESIDE)
     held = analysis.held(samples)
     expected = [c.id for c in analysis.ledger if c.expected_status == REPRODUCED]
-    found = {}
+    found: dict[str, Any] = {}
     for factor in analysis.settings.designs[BESIDE].vary:
         moved = np.flatnonzero(np.isfinite(samples.places[factor]))
         values = samples.values[factor]
@@ -362,7 +364,12 @@ def beside(analysis: Analysis) -> dict[str, object]:
     return found
 
 
-def _stretch(values, order, held, expected) -> dict[str, object]:
+def _stretch(
+    values: np.ndarray,
+    order: np.ndarray,
+    held: Mapping[str, np.ndarray],
+    expected: Sequence[str],
+) -> dict[str, object]:
     """Return how far one may go along samples, in their order, and which claims fail then."""
     last = None
     for i in order:
@@ -377,7 +384,7 @@ def run_out(analysis: Analysis, design: str) -> dict[str, object]:
     """Return for each claim up to which eccentricity, the larger one in y_st, it always holds."""
     samples = analysis.samples.of(design)
     larger = np.maximum(samples.values["eccentricity_3"], samples.values["eccentricity_2"])
-    found = {}
+    found: dict[str, Any] = {}
     for name, held in analysis.held(samples).items():
         fails = larger[~held]
         below = larger[larger < fails.min()] if fails.size else larger

@@ -66,7 +66,9 @@ def halves(
     return [_healed(first, second, groups) for first, second in cuts]
 
 
-def _healed(first: list[str], second: list[str], groups: list[list[str]]):
+def _healed(
+    first: list[str], second: list[str], groups: list[list[str]]
+) -> tuple[list[str], list[str]]:
     last = next(group for group in groups if first[-1] in group)
     moved = [name for name in second if name in last]
     return [*first, *moved], [name for name in second if name not in last]

@@ -150,9 +150,9 @@ class Settings(Section):
 
     @model_validator(mode="after")
     def _is_made_of_chains(self) -> Self:
-        focused = {name: d for name, d in self.designs.items() if d.around is not None}
+        focused = {name: (d, d.around) for name, d in self.designs.items() if d.around is not None}
         followed: dict[str, str] = {}
-        for name, design in focused.items():
+        for name, (design, around) in focused.items():
             chain, where = [name], f"designs.{name}"
             while (before := self.designs[chain[-1]].around) is not None:
                 chain.append(before)
@@ -161,17 +161,17 @@ class Settings(Section):
                         f"{where}.around: found a circle, {' around '.join(chain)}; "
                         "allowed is a chain that ends at a design around none"
                     )
-            if first := followed.get(design.around):
+            if first := followed.get(around):
                 raise ValueError(
-                    f"{where}.around: found {design.around!r}, as in {first}; "
+                    f"{where}.around: found {around!r}, as in {first}; "
                     "allowed is one design around each"
                 )
-            followed[design.around] = name
-            parent = self.designs[design.around]
+            followed[around] = name
+            parent = self.designs[around]
             if design.space != parent.space:  # samples of a chain are weighed as one even design
                 raise ValueError(
                     f"{where}.vary, fixed: found {design.space}; "
-                    f"allowed is that of {design.around}: {parent.space}"
+                    f"allowed is that of {around}: {parent.space}"
                 )
         return self
 

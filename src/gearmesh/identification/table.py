@@ -25,13 +25,17 @@ Findings = dict[str, Any]
 class _Dumper(yaml.SafeDumper):
     """Writes what is short in one line, and everything where it stands, without anchors."""
 
-    def represent_mapping(self, tag, mapping, flow_style=None):
+    def represent_mapping(
+        self, tag: str, mapping: Any, flow_style: bool | None = None
+    ) -> yaml.MappingNode:
         return super().represent_mapping(tag, mapping, len(str(mapping)) <= _SHORT)
 
-    def represent_sequence(self, tag, sequence, flow_style=None):
+    def represent_sequence(
+        self, tag: str, sequence: Any, flow_style: bool | None = None
+    ) -> yaml.SequenceNode:
         return super().represent_sequence(tag, sequence, len(str(sequence)) <= _SHORT)
 
-    def ignore_aliases(self, data):
+    def ignore_aliases(self, data: object) -> bool:
         return True
 
 

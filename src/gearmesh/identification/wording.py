@@ -84,12 +84,13 @@ def statements(ledger: Iterable[Claim], wordings: Sequence[Wording] = ()) -> lis
                 found.append(Statement(claim.id, quantity, low, high, low, high))
             else:
                 # A value on the limit must not fail by the last bit.
+                assert tolerance is not None  # checked by Claim
                 reach = tolerance * (1.0 + 1e-9)
                 core = min(sure.pop((claim.id, quantity), tolerance), reach)
                 ends = (target - reach, target + reach, target - core, target + core)
                 found.append(Statement(claim.id, quantity, *ends))
-    for claim, quantity in sure:
-        raise InputError(f"wordings: the ledger states no number {quantity!r} in claim {claim}")
+    for name, quantity in sure:
+        raise InputError(f"wordings: the ledger states no number {quantity!r} in claim {name}")
     return found
 
 

@@ -19,7 +19,7 @@ from gearmesh.interface.statements import (
     read_variants,
     with_settings,
 )
-from gearmesh.model.damping import Variant
+from gearmesh.model.variants import Variant
 from gearmesh.solvers import simulation
 from gearmesh.study.cases import Case
 from gearmesh.study.pair import Pair
@@ -51,7 +51,8 @@ def simulate(
         in a mesh period; by default those of the pair (5, 1 and 256 in the paper).
     start : tuple or Dataset, optional
         Initial condition: (y, dy/dτ_s), each with its unit or as a number of static deflections;
-        or an earlier run, from whose end this run goes on. By default static equilibrium.
+        or an earlier run, from whose end this run goes on as if it had not been interrupted (bit
+        for bit if all of its revolutions are kept). By default static equilibrium.
     tolerance : float, optional
         Local error tolerance, relative to y_st and y_st Ω_s; by default that of the pair (1e-10).
 
@@ -163,7 +164,7 @@ def sweep(
     at = {x: i for i, x in enumerate(order)}
     rows = [responses[i * len(pairs) + j][at[x]] for i in range(len(chosen)) for x in nus
             for j in range(len(pairs))]  # fmt: skip
-    axes = {"variant": [variant.name for variant in chosen], "nu": nus}
+    axes: dict[str, Sequence[object]] = {"variant": [variant.name for variant in chosen], "nu": nus}
     axes |= {name: _axis(name, values, pair) for name, values in over.items()}
     dataset = grid_dataset(rows, pairs * (len(rows) // len(pairs)), axes)
     return _described(dataset, pair, over)

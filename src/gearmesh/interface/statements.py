@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from gearmesh.errors import InputError
-from gearmesh.model.damping import Variant, variant
+from gearmesh.model.variants import Variant, variant
 from gearmesh.study.frequencies import read_nu
 from gearmesh.study.loading import load_study
 from gearmesh.study.pair import Pair
@@ -80,5 +80,6 @@ def with_settings(pair: Pair, start: Start | None = None, **settings: object) ->
 
 def _length(value: object) -> object:
     """Take a bare number as a number of static deflections."""
-    number = isinstance(value, int | float | np.number) and not isinstance(value, bool)
-    return f"{float(value)!r} y_st" if number else value
+    if isinstance(value, int | float | np.number) and not isinstance(value, bool):
+        return f"{float(value)!r} y_st"
+    return value

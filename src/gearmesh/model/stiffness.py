@@ -8,6 +8,9 @@ have.
 
 import numpy as np
 
+PITCH_PHASE = 0.5
+"""Mesh phase at which a single pair of equal wheels touches at the pitch point."""
+
 
 def duty(contact_ratio: float) -> float:
     """Return the share of the mesh period with two pairs of teeth in contact, epsilon - 1."""
@@ -20,7 +23,7 @@ def switch_phases(contact_ratio: float) -> tuple[float, float]:
     return half, 1.0 - half
 
 
-def in_double_contact(phase, contact_ratio: float):
+def in_double_contact(phase: float | np.ndarray, contact_ratio: float) -> np.ndarray:
     """Return whether two pairs of teeth carry at `phase`, a float or an array."""
     return np.abs(phase - np.round(phase)) < 0.5 * duty(contact_ratio)
 
@@ -30,7 +33,9 @@ def mean(contact_ratio: float, maximum: float, minimum: float) -> float:
     return minimum + 0.5 * (maximum - minimum) * (1.0 + (2.0 * contact_ratio - 3.0))
 
 
-def rectangular(phase, contact_ratio: float, maximum: float, minimum: float):
+def rectangular(
+    phase: float | np.ndarray, contact_ratio: float, maximum: float, minimum: float
+) -> np.ndarray:
     """Return the stiffness at `phase`, a float or an array: the sum of eq. (4) in closed form.
 
     Its n-th coefficient, 2 (C_max - C_min) sin(n pi (epsilon - 1)) / (n pi), is that of a
@@ -39,14 +44,18 @@ def rectangular(phase, contact_ratio: float, maximum: float, minimum: float):
     return np.where(in_double_contact(phase, contact_ratio), maximum, minimum)
 
 
-def fourier_amplitudes(contact_ratio: float, maximum: float, minimum: float, terms: int):
+def fourier_amplitudes(
+    contact_ratio: float, maximum: float, minimum: float, terms: int
+) -> np.ndarray:
     """Return the amplitudes of cos(n omega_c t) in eq. (4), shape (terms,), n = 1 first."""
     n = np.arange(1, terms + 1)
     sine = np.sin(n * ((contact_ratio - 2.0) * np.pi))
     return 0.5 * (maximum - minimum) * 4.0 / (np.pi * n) * (-1.0) ** n * sine
 
 
-def fourier(phase, contact_ratio: float, maximum: float, minimum: float, terms: int):
+def fourier(
+    phase: float | np.ndarray, contact_ratio: float, maximum: float, minimum: float, terms: int
+) -> np.ndarray:
     """Return the stiffness at `phase`, a float or an array, by eq. (4) cut after `terms` terms."""
     n = np.arange(1, terms + 1)
     waves = np.cos(2.0 * np.pi * n * np.asarray(phase)[..., None])

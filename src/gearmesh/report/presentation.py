@@ -26,9 +26,9 @@ STATUS_LABELS = {
 _VARIANT = re.compile(r"\b([a-h])-(conservative|material|lubricant|both)(?:-([\d.]+)x)?\b")
 
 
-def number(value: float, digits: int = 6) -> str:
+def number(value: float | None, digits: int = 6) -> str:
     """Write a number with a true minus, powers of ten, and a space in long whole numbers."""
-    if not math.isfinite(value):
+    if value is None or not math.isfinite(value):
         return "–"
     if 1e4 <= abs(value) < 1e9:
         return f"{value:,.0f}".replace(",", "\u202f").replace("-", "−")
@@ -92,9 +92,9 @@ def expected(claim: Claim) -> list[str]:
 def _target(target: Any, tolerance: float | None) -> str:
     if isinstance(target, Bound):
         low, high = target.at_least, target.at_most
-        if low is None:
-            return f"≤ {number(high)}"
-        return f"≥ {number(low)}" if high is None else f"{number(low)} to {number(high)}"
+        if low is not None and high is not None:
+            return f"{number(low)} to {number(high)}"
+        return f"≥ {number(low)}" if low is not None else f"≤ {number(high)}"
     return f"{number(target)} ± {number(tolerance)}" if tolerance else number(target)
 
 
@@ -104,7 +104,7 @@ def typeset(text: str) -> Markup:
     return Markup(re.sub(r"(?<=\w)_([A-Za-z0-9]+)", r"<sub>\1</sub>", text))
 
 
-def _symbol(match: re.Match) -> str:
+def _symbol(match: re.Match[str]) -> str:
     letter, where, factor = match.groups()
     multiple = f"\u00a0({factor}k)" if factor else ""
     return f'<span style="white-space: nowrap">{letter}-{COURSES[where].symbol}{multiple}</span>'

@@ -12,7 +12,7 @@ import numpy as np
 from gearmesh.dynamics import response_curves as curves
 from gearmesh.dynamics.refinement import Batch
 from gearmesh.dynamics.response_curves import FailedRun, Jump, ResponseCurve
-from gearmesh.model.damping import variant
+from gearmesh.model.variants import variant
 from gearmesh.reproduction.frequencies import FIG_4, FIRST, FIRST_JUMP, LAST
 from gearmesh.solvers.response import MAXIMUM, MINIMUM, Response
 from gearmesh.study.pair import Pair
@@ -214,10 +214,13 @@ def _loop_searches(curve: ResponseCurve, pair: Pair) -> Searches:
 
 def loop_place(curve: ResponseCurve, end: float, initial_phase: float) -> float:
     """Return the phase of the mesh period at which the loop closes, just below its end in ν_s."""
-    response = curve.at([end - curve.width])[0]
-    closest = int(np.argmin(np.abs(np.diff(response.extremum_y))))
-    time = response.extremum_time[closest : closest + 2].mean()
-    return float((time / response.period + initial_phase) % 1.0)
+
+    def phase(response: Response) -> float:
+        closest = int(np.argmin(np.abs(np.diff(response.extremum_y))))
+        time = response.extremum_time[closest : closest + 2].mean()
+        return float((time / response.period + initial_phase) % 1.0)
+
+    return float(curve.of(phase)(np.array([end - curve.width]))[0])
 
 
 def _least(values: Iterable[float]) -> float:

@@ -1,45 +1,60 @@
-"""Compiled kernels that are kept on disk, and noticed when their sources change."""
+"""Compiled kernels that are kept on disk, and compiled again when a source changes."""
 
 import contextlib
-import fcntl
-import hashlib
 from collections.abc import Callable, Iterator
 from functools import lru_cache, partial, wraps
 from pathlib import Path
-from types import ModuleType
+from typing import Any
 
-from numba import njit
+from numba import config, njit
+
+from gearmesh.errors import InputError
+from gearmesh.solvers import sources
+
+try:
+    import fcntl
+except ImportError:  # Windows has no such locks
+    fcntl = None  # type: ignore[assignment]
 
 inner = partial(njit, no_cpython_wrapper=True, no_cfunc_wrapper=True)
 """As `njit`, for functions that compiled code alone calls: a quarter less to compile."""
 
 
-def persistent(build: Callable[[str, bool], Callable], *modules: ModuleType) -> Callable:
+def persistent(build: Callable[[str, bool], Any]) -> Callable[..., Any]:
     """Return the function that `build` compiles, compiled at its first call and kept on disk.
 
     numba looks for changes only in the file of the function that it keeps, and not in those of
-    the functions that this one calls. Nor does it keep processes that start together from doing
-    the same work: here one compiles, and the others wait for what it keeps.
+    the functions that this one calls; `gearmesh.solvers.sources` covers them all. Nor does numba
+    keep processes that start together from doing the same work: here one compiles, and the others
+    wait for its result where the system has file locks.
 
     Parameters
     ----------
     build : callable
-        ``build(sources, cache)`` returns a numba function, kept on disk if `cache` is true. The
-        function must refer to `sources`: free variables are part of the key of numba's cache.
-    *modules : module
-        All modules with compiled code that the function calls.
+        ``build(key, cache)`` returns a numba function, kept on disk if `cache` is true. The
+        function must refer to `key`: free variables are part of the key of numba's cache.
+
+    Raises
+    ------
+    InputError
+        From the function that is returned, if numba's compiler is switched off.
     """
 
     @lru_cache
-    def compiled(cache: bool) -> Callable:
-        sources = hashlib.sha256(b"".join(_source(module) for module in modules)).hexdigest()
+    def compiled(cache: bool) -> Any:
+        if config.DISABLE_JIT:  # type: ignore[attr-defined]
+            raise InputError(
+                "NUMBA_DISABLE_JIT: found it set; allowed is unset or 0, because the solvers "
+                "run as compiled code only"
+            )
+        key = sources.digest()
         try:
-            return build(sources, cache)
+            return build(key, cache)
         except RuntimeError:  # numba found no folder that it may write its cache to
-            return build(sources, False)
+            return build(key, False)
 
     @wraps(build)
-    def call(*arguments):
+    def call(*arguments: object) -> object:
         try:
             kernel = compiled(True)
             if kernel.signatures:
@@ -52,16 +67,12 @@ def persistent(build: Callable[[str, bool], Callable], *modules: ModuleType) -> 
     return call
 
 
-def _source(module: ModuleType) -> bytes:
-    return Path(module.__file__).read_bytes()
-
-
 @contextlib.contextmanager
 def _alone(cache: str | None, name: str) -> Iterator[None]:
     """Let one process at a time go on; where nothing is kept, or no file can be locked, all."""
     with contextlib.ExitStack() as stack:
         with contextlib.suppress(OSError):
-            if cache:
+            if cache and fcntl:
                 lock = stack.enter_context((Path(cache) / f"{name}.lock").open("a"))
                 fcntl.flock(lock, fcntl.LOCK_EX)
         yield

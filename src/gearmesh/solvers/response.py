@@ -1,25 +1,34 @@
-"""What is measured on one run: extrema, strobes, spans and, on request, its time course.
+"""What is measured on one run: extrema, stroboscopic points, shares and the time course.
 
 Everything here is dimensionless: lengths in static deflections y_st, times in
 tau_s = Omega_s t counted from the start of the run, forces in the static mesh force F_st.
 """
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass, field
+from typing import Any
 
 import numpy as np
 
-OK, STEP_LIMIT, EXTREMUM_OVERFLOW, NOT_FINITE = range(4)
-"""Outcome of a run, as the compiled solvers tell it."""
+from gearmesh.model.problem import Problem, State
 
-STATUSES = ("ok", "step_limit", "extremum_overflow", "not_finite")
-"""Their names, as `Response.status` tells them."""
+OK, STEP_LIMIT, DIVERGED, FRICTION_UNDEFINED = range(4)
+"""Outcome of a run, as the compiled solvers return it."""
+
+STATUSES = ("ok", "step_limit", "diverged", "friction_undefined")
+"""Their names, as in `Response.status`.
+
+``step_limit``: too many steps, because something in the problem is too fast. ``diverged``: y has
+left every scale of the problem. ``friction_undefined``: no sign of eq. (6) lasts
+(`gearmesh.model.friction`).
+"""
 
 LOOSENING = 100.0
 """How much looser the companion run is whose difference estimates the errors."""
 
 SENSITIVE = 1e5
-"""An estimated error above this multiple of the tolerance marks a sensitive orbit."""
+"""A difference above this multiple of the tolerance marks a sensitive orbit."""
 
 MAXIMUM, MINIMUM = 1, -1
 """Kinds of extrema."""
@@ -44,7 +53,11 @@ MEASURED = [
 
 @dataclass(slots=True)
 class Samples:
-    """Time course of the kept revolution; every array has shape (n_samples,)."""
+    """Time course of the kept revolutions; every array has shape (n_samples,).
+
+    `y`, `v` and `a` are y, dy/dtau_s and d2y/dtau_s2, the stiffnesses are in C_s, the forces in
+    F_st, `regime` as in `gearmesh.model.contact`.
+    """
 
     time: np.ndarray
     y: np.ndarray
@@ -65,12 +78,20 @@ def _nothing() -> np.ndarray:
 class Response:
     """Measured response of one run.
 
+    A run with another status than ``"ok"`` has nothing but `status`, `period`, `nu` and `steps`;
+    all else is empty, not a number or None. The same holds for what a run without kept revolutions
+    does not measure.
+
     Attributes
     ----------
     status : str
-        ``"ok"``, or why the run could not be integrated.
+        One of `STATUSES`.
     period : float
         Mesh period T in tau_s.
+    nu : float
+        Mesh frequency nu_s.
+    steps : int
+        Steps that the integration took.
     extremum_time, extremum_y, extremum_kind : ndarray, shape (n_extrema,)
         Every local extremum of y in the kept revolutions.
     strobe_y, strobe_v : ndarray, shape (n_periods + 1,)
@@ -79,22 +100,30 @@ class Response:
         Largest and least value and root mean square of y over the kept revolutions.
     contact_loss_fraction, inverse_mesh_fraction : float
         Shares of the kept time with -s < y < 0 and with y <= -s.
-    n_contact_losses : int
+    n_contact_losses : int or None
         Number of times that contact is lost in the kept revolutions.
     turning_points_per_period : float
         Mean number of extrema in a kept mesh period.
     y_max_error, y_min_error : float
         Estimated errors of `y_max` and `y_min`.
-    final_state : tuple of four float
-        u, u', b, b' at the end of the run, to go on from in a sweep.
-    sensitive : bool
-        Whether the orbit amplifies integration errors (grazing, chaos).
+    sensitive : bool or None
+        Whether the orbit amplifies integration errors (grazing, chaos): whether a companion run
+        differs by more than `SENSITIVE` tolerances in `y_max`, in `y_min` or at any boundary of the
+        whole run. None if errors were not estimated.
+    rotation_drift : float
+        What the mean rotation (phi_3 - phi_2)/2 gains over the run, in rad. Nothing but friction
+        turns it, and nothing holds it (`gearmesh.model.friction`). Not a number in the reduced
+        system, which does not follow it.
+    final_state : State or None
+        The end of the run, to go on from.
     samples : Samples or None
         The time course, where it was asked for.
     """
 
     status: str
     period: float
+    nu: float = np.nan
+    steps: int = 0
     extremum_time: np.ndarray = field(default_factory=_nothing)
     extremum_y: np.ndarray = field(default_factory=_nothing)
     extremum_kind: np.ndarray = field(default_factory=lambda: np.empty(0, np.int8))
@@ -105,64 +134,105 @@ class Response:
     y_rms: float = np.nan
     contact_loss_fraction: float = np.nan
     inverse_mesh_fraction: float = np.nan
-    n_contact_losses: int = 0
+    n_contact_losses: int | None = None
     turning_points_per_period: float = np.nan
     y_max_error: float = np.nan
     y_min_error: float = np.nan
-    final_state: tuple[float, float, float, float] | None = None
-    sensitive: bool = False
+    sensitive: bool | None = None
+    rotation_drift: float = np.nan
+    final_state: State | None = None
     samples: Samples | None = None
 
 
+@dataclass(slots=True)
+class Companion:
+    """What a companion run leaves: its summary (`MEASURED`) and its strobes."""
+
+    summary: Mapping[str, Any]
+    strobes: np.ndarray
+
+
 def assemble(
-    summary, companion, strobes, extrema, period, kept_periods, final_state, tolerance, samples
+    problem: Problem,
+    summary: Mapping[str, Any],
+    strobes: np.ndarray,
+    extrema: np.ndarray,
+    final_state: State,
+    companion: Companion | None,
+    tolerance: float,
+    samples: Samples | None,
+    rotation_drift: float = np.nan,
 ) -> Response:
     """Return the response that a compiled solver has measured.
 
     Parameters
     ----------
-    summary, companion : record with the fields `MEASURED`
-        Of the run and of its companion, which may be None.
+    problem : Problem
+    summary : record with the fields `MEASURED`
     strobes : ndarray, shape (n_periods + 1, 2)
     extrema : ndarray of `EXTREMUM`
         Copied: it may be a piece of a workspace, as `strobes` may.
-    period : float
-        T in tau_s.
-    kept_periods : int
-        Mesh periods that are measured.
-    final_state : tuple of four float
+    final_state : State
+    companion : Companion or None
     tolerance : float
         Of the run.
     samples : Samples or None
+    rotation_drift : float
+        In rad.
     """
-    if summary["status"] != OK:
-        return Response(STATUSES[summary["status"]], period)
-    errors = [np.nan, np.nan]
-    if companion is not None:
-        lost = companion["status"] != OK
-        errors = [
-            np.inf if lost else abs(float(summary[name] - companion[name]))
-            for name in ("y_max", "y_min")
-        ]
-    duration = kept_periods * period
-    return Response(
-        status="ok",
-        period=period,
-        extremum_time=extrema["time"].copy(),
-        extremum_y=extrema["y"].copy(),
-        extremum_kind=extrema["kind"].copy(),
-        strobe_y=strobes[:, 0].copy(),
-        strobe_v=strobes[:, 1].copy(),
-        y_max=float(summary["y_max"]),
-        y_min=float(summary["y_min"]),
-        y_rms=math.sqrt(summary["square_integral"] / duration),
-        contact_loss_fraction=float(summary["loss_time"]) / duration,
-        inverse_mesh_fraction=float(summary["inverse_time"]) / duration,
-        n_contact_losses=int(summary["contact_losses"]),
-        turning_points_per_period=len(extrema) / kept_periods,
-        y_max_error=errors[0],
-        y_min_error=errors[1],
-        final_state=final_state,
-        sensitive=any(error > SENSITIVE * tolerance for error in errors),
-        samples=samples,
+    response = Response(
+        STATUSES[summary["status"]], problem.period, problem.nu, int(summary["steps"])
     )
+    if summary["status"] != OK:
+        return response
+    response.strobe_y = strobes[:, 0].copy()
+    response.strobe_v = strobes[:, 1].copy()
+    response.final_state = final_state
+    response.rotation_drift = rotation_drift
+    if problem.kept_periods:
+        _measure(response, problem, summary, extrema, samples)
+    if companion is not None:
+        _estimate(response, summary, strobes, companion, SENSITIVE * tolerance)
+    return response
+
+
+def _measure(
+    response: Response,
+    problem: Problem,
+    summary: Mapping[str, float],
+    extrema: np.ndarray,
+    samples: Samples | None,
+) -> None:
+    """Write what is measured on the kept revolutions."""
+    duration = problem.kept_periods * problem.period
+    response.extremum_time = extrema["time"].copy()
+    response.extremum_y = extrema["y"].copy()
+    response.extremum_kind = extrema["kind"].copy()
+    response.y_max = float(summary["y_max"])
+    response.y_min = float(summary["y_min"])
+    response.y_rms = math.sqrt(summary["square_integral"] / duration)
+    response.contact_loss_fraction = float(summary["loss_time"]) / duration
+    response.inverse_mesh_fraction = float(summary["inverse_time"]) / duration
+    response.n_contact_losses = int(summary["contact_losses"])
+    response.turning_points_per_period = len(extrema) / problem.kept_periods
+    response.samples = samples
+
+
+def _estimate(
+    response: Response,
+    summary: Mapping[str, Any],
+    strobes: np.ndarray,
+    companion: Companion,
+    bound: float,
+) -> None:
+    """Write what the companion says about errors."""
+    if companion.summary["status"] != OK:
+        response.y_max_error = response.y_min_error = np.inf
+        response.sensitive = True
+        return
+    errors = [abs(float(summary[name] - companion.summary[name])) for name in ("y_max", "y_min")]
+    if response.n_contact_losses is not None:
+        response.y_max_error, response.y_min_error = errors
+    # Extremes may agree by chance on two ways that have parted, and parted ways may meet again.
+    apart = float(np.abs(strobes - companion.strobes).max())
+    response.sensitive = max(*errors, apart) > bound

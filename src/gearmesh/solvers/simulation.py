@@ -8,7 +8,7 @@ deviation and the truncated Fourier series of the stiffness.
 
 from collections.abc import Sequence
 
-from gearmesh.model.motion import Problem
+from gearmesh.model.problem import Problem
 from gearmesh.solvers.reduced import runs as reduced
 from gearmesh.solvers.response import Response
 
@@ -42,21 +42,20 @@ def simulate(
         In the order of `problems`. A run that fails has a status other than ``"ok"``. Samples of
         runs that were solved together are pieces of one array: copy those that you keep.
     """
-    responses: list[Response | None] = [None] * len(problems)
+    responses: dict[int, Response] = {}
     reducible = [i for i, problem in enumerate(problems) if reduced.is_reducible(problem)]
     for first in range(0, len(reducible), _CHUNK):
         chunk = reducible[first : first + _CHUNK]
         found = reduced.integrate(
             [problems[i] for i in chunk], tolerance, samples_per_period, estimate_errors
         )
-        for i, measured in zip(chunk, found, strict=True):
-            responses[i] = measured
+        responses.update(zip(chunk, found, strict=True))
     if len(reducible) < len(problems):
         from gearmesh.solvers.full.runs import integrate
 
-        for i, measured in enumerate(responses):
-            if measured is None:
+        for i, problem in enumerate(problems):
+            if i not in responses:
                 responses[i] = integrate(
-                    problems[i], tolerance, samples_per_period, estimate_errors=estimate_errors
+                    problem, tolerance, samples_per_period, estimate_errors=estimate_errors
                 )
-    return responses
+    return [responses[i] for i in range(len(problems))]

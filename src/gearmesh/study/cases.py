@@ -9,7 +9,7 @@ from typing import Annotated, Literal, Self
 import numpy as np
 from pydantic import BeforeValidator, Field, field_validator, model_validator
 
-from gearmesh.model.damping import VARIANTS, Variant, variant
+from gearmesh.model.variants import VARIANTS, Variant, variant
 from gearmesh.study.frequencies import MAX_CASES, Frequencies, Nu
 from gearmesh.study.pair import Pair
 from gearmesh.study.schema import Section, nearest, quantity

@@ -47,7 +47,7 @@ class Frequencies(Section):
             raise ValueError(f"{missing[0]}: missing; a grid has start, stop and step")
         if missing and not self.values:
             raise ValueError("values: missing; allowed are start, stop and step, values, or both")
-        if not missing and self.stop < self.start:
+        if self.start is not None and self.stop is not None and self.stop < self.start:
             raise ValueError(
                 f"stop: found {self.stop:g}, below start; allowed is {self.start:g} to {NU_MAX:g}"
             )

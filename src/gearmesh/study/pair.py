@@ -8,16 +8,18 @@ import hashlib
 import json
 import math
 from collections.abc import Iterable, Mapping
+from dataclasses import replace
 from typing import Any, NamedTuple, Self
 
 from pydantic import PrivateAttr, model_validator
 
 from gearmesh.model import stiffness
-from gearmesh.model.damping import Variant
-from gearmesh.model.motion import Problem
+from gearmesh.model.motion import state_at
+from gearmesh.model.problem import Problem
+from gearmesh.model.variants import Variant
 from gearmesh.study import units
 from gearmesh.study.provenance import DEFAULT, SETTING, STATED, Statement
-from gearmesh.study.schema import Section, quantity, validate
+from gearmesh.study.schema import Section, quantity, read_quantity, shown, validate
 
 KG_PER_N_S2_MM = 1000.0
 """1 N s²/mm = 1000 kg: with it stiffnesses in N/mm and masses in kg go together."""
@@ -207,6 +209,12 @@ class Pair(Section):
         new = {name: Statement(value) for name, value in changes.items()}
         return Pair.from_statements({**self._all_statements(), **new})
 
+    def model_copy(self, *, update: Mapping[str, Any] | None = None, deep: bool = False) -> Self:
+        """Copy without validation; the copy knows its values, not how they were stated."""
+        copy = super().model_copy(update=update, deep=deep)
+        copy._statements = {}
+        return copy
+
     def _all_statements(self) -> dict[str, Statement]:
         """Return the statements; a pair that was built from bare values has none."""
         if self._statements:
@@ -314,7 +322,7 @@ class Pair(Section):
         """
         y_st, c_s = self.static_deflection, self.stiffness_mean
         eccentricity_3, eccentricity_2 = self.eccentricity
-        return Problem(
+        problem = Problem(
             nu=nu,
             contact_ratio=self.contact_ratio,
             stiffness_max=self.mesh_stiffness_max / c_s,
@@ -342,17 +350,11 @@ class Pair(Section):
             initial_phase=self.initial_phase,
             revolutions=self.revolutions,
             kept_revolutions=self.kept_revolutions,
-            initial_state=self._initial_state(),
         )
-
-    def _initial_state(self) -> tuple[float, float, float, float] | None:
-        """Return u, u', b, b' at the start; None for rest in static equilibrium."""
         if self.initial_displacement is None and self.initial_velocity == 0.0:
-            return None
-        y_st = self.static_deflection
+            return problem  # at rest in static equilibrium
         y = 1.0 if self.initial_displacement is None else self.initial_displacement / y_st
-        bearing = -2.0 / (self.bearing_stiffness / self.stiffness_mean)
-        return y - bearing, self.initial_velocity / y_st, bearing, 0.0
+        return replace(problem, initial_state=state_at(problem, y, self.initial_velocity / y_st))
 
     def _damping_law(
         self,
@@ -392,37 +394,38 @@ def _with_unit(value: object, unit: str) -> object:
     return value if unit == "1" or value is None else f"{value!r} {unit}"
 
 
-_SCALES = {"y_st": "mm", "m_red": "kg", "C_s": "N/mm"}
-
-
 def _resolved(data: dict[str, Any]) -> dict[str, Any]:
-    """Replace values such as ``8 y_st`` by quantities, where their scale can be read."""
+    """Replace values such as ``8 y_st`` by quantities."""
     found = dict(data)
-    for scale, unit in _SCALES.items():
-        size = _scale(scale, found)
-        if size is not None:
-            for name, value in found.items():
-                found[name] = units.scaled(value, scale, size, unit)
+    for scale, unit in units.SCALES.items():
+        relative = [name for name, value in data.items() if units.is_multiple(value, scale)]
+        size = _scale(scale, data, relative[0]) if relative else 0.0
+        for name in relative:
+            found[name] = units.scaled(found[name], scale, size, unit)
     return found
 
 
-def _scale(name: str, data: Mapping[str, Any]) -> float | None:
-    """Return the size of a scale; None if what it follows from cannot be read."""
+def _scale(scale: str, data: Mapping[str, Any], user: str) -> float:
+    """Return the size of a scale, for `user` and other parameters that are stated in it.
+
+    What is wrong with the scale itself is reported here, once, and not for each of them.
+    """
+    declared = dict(_declarations())
 
     def read(parameter: str) -> float:
-        declared = Pair.model_fields[parameter].json_schema_extra
-        assert isinstance(declared, dict)
-        return units.parse(data.get(parameter), str(declared["unit"]))
+        if data.get(parameter) is None:
+            raise ValueError(f"{parameter}: missing; {user} is stated in {scale}")
+        try:
+            return float(read_quantity(data[parameter], declared[parameter]))  # type: ignore[arg-type]
+        except (ValueError, TypeError) as error:
+            raise ValueError(f"{parameter}: found {shown(data[parameter])}; {error}") from None
 
-    try:
-        if name == "y_st":
-            return read("static_deflection")
-        if name == "m_red":
-            return read("reduced_mass")
-        highest = read("mesh_stiffness_max")
-        return stiffness.mean(read("contact_ratio"), highest, read("stiffness_ratio") * highest)
-    except ValueError:
-        return None  # validation says what is wrong with it
+    if scale == "y_st":
+        return read("static_deflection")
+    if scale == "m_red":
+        return read("reduced_mass")
+    highest = read("mesh_stiffness_max")
+    return stiffness.mean(read("contact_ratio"), highest, read("stiffness_ratio") * highest)
 
 
 class Quantity(NamedTuple):

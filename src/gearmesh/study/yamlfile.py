@@ -5,7 +5,9 @@ tags are refused, so that a file is as large as it looks and cannot run code.
 """
 
 import re
+from collections.abc import Hashable
 from pathlib import Path
+from typing import Any
 
 import yaml
 
@@ -15,17 +17,18 @@ _MAX_BYTES = 1_000_000
 _MAX_DEPTH = 12
 
 
-def _slip(problem: str, place: yaml.Event | yaml.Node) -> yaml.MarkedYAMLError:
+def _slip(problem: str, place: Any) -> yaml.MarkedYAMLError:
+    """Return an error at the place of an event or a node."""
     return yaml.MarkedYAMLError(problem=problem, problem_mark=place.start_mark)
 
 
 class _Loader(yaml.SafeLoader):
     """Safe loader with YAML 1.2 scalars, without aliases and with unique keys."""
 
-    yaml_implicit_resolvers: dict = {}  # noqa: RUF012 - PyYAML's own way; filled below
+    yaml_implicit_resolvers: dict[str, Any] = {}  # noqa: RUF012 - PyYAML's own way; filled below
     depth = 0
 
-    def compose_node(self, parent, index):
+    def compose_node(self, parent: yaml.Node | None, index: int) -> yaml.Node | None:
         event = self.peek_event()
         if isinstance(event, yaml.AliasEvent):
             raise _slip("aliases (*) are not supported", event)
@@ -38,7 +41,7 @@ class _Loader(yaml.SafeLoader):
         self.depth -= 1
         return node
 
-    def construct_mapping(self, node, deep=False):
+    def construct_mapping(self, node: yaml.MappingNode, deep: bool = False) -> dict[Hashable, Any]:
         seen = set()
         for key_node, _ in node.value:
             key = self.construct_object(key_node, deep=True)
@@ -105,10 +108,6 @@ def _load(text: str, where: str) -> object:
     except yaml.MarkedYAMLError as error:
         mark = error.problem_mark or error.context_mark
         line = f" line {mark.line + 1}, column {mark.column + 1}:" if mark else ""
-        raise InputError(f"{where}:{line} {_one_line(error.problem or error.context)}") from None
+        raise InputError(f"{where}:{line} {error.problem or error.context}") from None
     except (yaml.YAMLError, RecursionError, ValueError) as error:
-        raise InputError(f"{where}: not YAML ({_one_line(error)})") from None
-
-
-def _one_line(message: object) -> str:
-    return " ".join(str(message).split())
+        raise InputError(f"{where}: not YAML ({error})") from None

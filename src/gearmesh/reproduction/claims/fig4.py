@@ -4,7 +4,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from gearmesh.model.motion import NORMAL_MESH
+from gearmesh.model.contact import NORMAL_MESH
 from gearmesh.reproduction.claims.evidence import Evidence
 from gearmesh.reproduction.claims.fig2 import LUBRICANT
 from gearmesh.reproduction.frequencies import FIG_4

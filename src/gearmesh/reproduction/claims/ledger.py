@@ -6,7 +6,7 @@ from collections import Counter
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, Literal
+from typing import Any, Final, Literal
 
 from pydantic import Field, field_validator, model_validator
 from pydantic_core import PydanticCustomError
@@ -16,9 +16,12 @@ from gearmesh.errors import InputError
 from gearmesh.study import yamlfile
 from gearmesh.study.schema import Section, shown, validate
 
-REPRODUCED, DEVIATES, NOT_TESTABLE = "reproduced", "deviates", "not_testable"
-
 Status = Literal["reproduced", "deviates", "not_testable"]
+
+REPRODUCED: Final = "reproduced"
+DEVIATES: Final = "deviates"
+NOT_TESTABLE: Final = "not_testable"
+
 Kind = Literal["printed number", "threshold", "ordering", "shape"]
 Figure = Literal["printed", "fig2", "fig3", "fig4", "fig5", "fig6", "fig7"]
 
@@ -33,8 +36,9 @@ class Bound(Section):
     def _bounds_something(self) -> "Bound":
         if self.at_least is None and self.at_most is None:
             raise ValueError("at_least: missing; needed is it, at_most or both")
-        if None not in (self.at_least, self.at_most) and self.at_least > self.at_most:
-            raise ValueError(f"at_least: {self.at_least:g} is above at_most, {self.at_most:g}")
+        low, high = self.at_least, self.at_most
+        if low is not None and high is not None and low > high:
+            raise ValueError(f"at_least: {low:g} is above at_most, {high:g}")
         return self
 
 
@@ -70,7 +74,7 @@ class Claim(Section):
     @field_validator("expected", mode="before")
     @classmethod
     def _read_targets(cls, value: object) -> object:
-        if isinstance(value, dict) and not value.keys() & Bound.model_fields.keys():
+        if isinstance(value, dict) and value and not value.keys() & Bound.model_fields.keys():
             return {name: _target(target) for name, target in value.items()}
         return _target(value)
 
@@ -79,8 +83,9 @@ class Claim(Section):
         if (self.expected_status == REPRODUCED) != (self.reason is None):
             raise ValueError("reason: needed for an expected_status that is not 'reproduced' only")
         if isinstance(self.tolerance, dict):
-            named = self.expected if isinstance(self.expected, dict) else {}
-            for name in self.tolerance.keys() - named.keys():
+            if not isinstance(self.expected, dict):
+                raise ValueError("tolerance: found a mapping; allowed is a number, as for expected")
+            for name in self.tolerance.keys() - self.expected.keys():
                 raise ValueError(f"tolerance: expected names no quantity {name!r}")
         for name, target, tolerance in self.targets():
             of = f" of {name!r}" if name else ""
@@ -92,17 +97,18 @@ class Claim(Section):
 
     def targets(self) -> list[tuple[str, Target, float | None]]:
         """Return (name, target, tolerance) of each quantity; the name is '' for a single one."""
-        if not isinstance(self.expected, dict):
-            return [("", self.expected, self.tolerance)]
+        named = self.expected if isinstance(self.expected, dict) else {"": self.expected}
+        of_each: dict[str, float | None] = {}
         if isinstance(self.tolerance, dict):
-            tolerance = self.tolerance
+            of_each |= self.tolerance
         else:
-            tolerance = {
+            single = not isinstance(self.expected, dict)
+            of_each |= {
                 name: self.tolerance
-                for name, target in self.expected.items()
-                if not isinstance(target, Bound)
+                for name, target in named.items()
+                if single or not isinstance(target, Bound)
             }
-        return [(name, target, tolerance.get(name)) for name, target in self.expected.items()]
+        return [(name, target, of_each.get(name)) for name, target in named.items()]
 
 
 class Entry(Claim):
@@ -154,7 +160,7 @@ def _satisfies(value: Any, target: Target, tolerance: float | None) -> bool:
         high = math.inf if target.at_most is None else target.at_most
         return low <= value <= high
     # A measured value that sits on the limit must not fail by the last bit.
-    return abs(value - target) <= tolerance * (1 + 1e-9)
+    return tolerance is not None and abs(value - target) <= tolerance * (1 + 1e-9)
 
 
 def holds(claim: Claim, measured: Any) -> bool:
@@ -167,10 +173,9 @@ def holds(claim: Claim, measured: Any) -> bool:
         Where `claim.expected` names several quantities, a mapping from their names to such
         values. Every one must fit; nothing measured (None, not a number, empty) does not.
     """
-    if not isinstance(claim.expected, dict):
-        return _satisfies(measured, claim.expected, claim.tolerance)
+    named = measured if isinstance(claim.expected, dict) else {"": measured}
     return all(
-        _satisfies(measured.get(name), target, tolerance)
+        _satisfies(named.get(name), target, tolerance)
         for name, target, tolerance in claim.targets()
     )
 
@@ -184,13 +189,14 @@ def load_ledger(path: Path) -> list[Claim]:
         One line that names the file, the claim and the key.
     """
     content = yamlfile.read_mapping(Path(path))
+    claims = []
     for name, claim in content.items():
         if not isinstance(claim, dict):
-            raise InputError(f"{path}: {name}: found {shown(claim)}: allowed is a mapping of keys")
-    return [
-        validate(Claim, {"id": name, **claim}, f"{path}: {name}", {})
-        for name, claim in content.items()
-    ]
+            raise InputError(f"{path}: {name}: found {shown(claim)}; allowed is a mapping of keys")
+        if "id" in claim:
+            raise InputError(f"{path}: {name}: id: unknown key; {name} is the id")
+        claims.append(validate(Claim, {"id": name} | claim, f"{path}: {name}", {}))
+    return claims
 
 
 def write_entries(path: Path, entries: Iterable[Entry]) -> None:

@@ -8,7 +8,7 @@ import numpy as np
 from scipy.optimize import brentq
 
 from gearmesh.model import stiffness
-from gearmesh.model.damping import variant
+from gearmesh.model.variants import variant
 from gearmesh.reproduction.claims.evidence import Evidence
 from gearmesh.reproduction.frequencies import FIRST_JUMP
 from gearmesh.solvers.simulation import simulate

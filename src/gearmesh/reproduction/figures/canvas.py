@@ -3,6 +3,7 @@
 import functools
 from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 from matplotlib import style
 from matplotlib.axes import Axes
@@ -29,7 +30,7 @@ def styled(draw: Callable[..., Figure]) -> Callable[..., Figure]:
     """Make `draw` work under the figures' style file, whatever the caller's settings."""
 
     @functools.wraps(draw)
-    def under_style(*args, **kwargs) -> Figure:
+    def under_style(*args: Any, **kwargs: Any) -> Figure:
         with style.context(["default", STYLE]):
             return draw(*args, **kwargs)
 
@@ -125,7 +126,7 @@ def course_handle(name: str) -> Line2D:
     )
 
 
-def marker_look(course: palette.Course, size: float | None = None) -> dict:
+def marker_look(course: palette.Course, size: float | None = None) -> dict[str, Any]:
     """Return the marker settings of `course` for `Axes.plot`."""
     return {
         "marker": course.marker,
@@ -156,7 +157,7 @@ def micrometre_axis(axes: Axes, static_deflection: float, label: bool = True) ->
     right = axes.twinx()
     axes.tick_params(axis="y", which="both", right=False)
     micrometres = 1e3 * static_deflection
-    scale = axes.yaxis.get_transform()
+    scale: Any = axes.yaxis.get_transform()
     if axes.get_yscale() == "symlog":
         right.set_yscale(
             "symlog",

@@ -11,6 +11,9 @@ from gearmesh.reproduction.figures.canvas import WIDTH, styled
 CENTRE_3, CENTRE_2 = np.array((-1.75, -1.0)), np.array((1.75, 1.0))
 """Centres of the wheels, in base radii; the wheels are drawn apart to make room for the mesh."""
 
+Place = tuple[float, float] | np.ndarray
+"""A point of the drawing."""
+
 TEETH = 21
 PRESSURE_ANGLE = np.radians(20.0)
 TINTS = {3: "#dfe9f2", 2: "#f8e6dc"}
@@ -168,11 +171,13 @@ def _plain(axes: Axes) -> None:
     axes.patch.set_alpha(0.0)
 
 
-def _write(axes: Axes, place, text: str, **look) -> None:
-    axes.text(*place, text, **{"ha": "center", "va": "center", "fontsize": 10, **look})
+def _write(axes: Axes, place: Place, text: str, **look: object) -> None:
+    axes.text(place[0], place[1], text, **{"ha": "center", "va": "center", "fontsize": 10, **look})
 
 
-def _arrow(start, end, colour: str, style: str = "-|>", size: float = 8) -> FancyArrowPatch:
+def _arrow(
+    start: Place, end: Place, colour: str, style: str = "-|>", size: float = 8
+) -> FancyArrowPatch:
     return FancyArrowPatch(
         start, end, arrowstyle=style, mutation_scale=size, color=colour, lw=0.9,
         shrinkA=0, shrinkB=0, zorder=4,
@@ -192,7 +197,9 @@ def _turn(
     _write(axes, label, name, color=colour)
 
 
-def _spring(axes: Axes, start, end, colour: str = palette.INK, width: float = 0.9) -> None:
+def _spring(
+    axes: Axes, start: Place, end: Place, colour: str = palette.INK, width: float = 0.9
+) -> None:
     along = np.array((0, 0.14, *np.linspace(0.18, 0.82, 13), 0.86, 1))
     swing = np.array((0, 0, *(0.085 * (-1.0) ** np.arange(13)), 0, 0))
     swing[2] = swing[-3] = 0.0
@@ -202,12 +209,12 @@ def _spring(axes: Axes, start, end, colour: str = palette.INK, width: float = 0.
     axes.plot(*points.T, color=colour, lw=width, solid_joinstyle="round", zorder=3)
 
 
-def _damper(axes: Axes, start, end) -> None:
+def _damper(axes: Axes, start: Place, end: Place) -> None:
     direction = np.subtract(end, start)
     across = 0.09 * np.array((-direction[1], direction[0])) / np.hypot(*direction)
 
     def at(share: float, side: float = 0.0) -> np.ndarray:
-        return start + share * direction + side * across
+        return np.asarray(start + share * direction + side * across)
 
     cup = (at(0.68, 1), at(0.38, 1), at(0.38, -1), at(0.68, -1))
     axes.add_patch(Polygon(cup, fc="white", lw=0, zorder=2.5))

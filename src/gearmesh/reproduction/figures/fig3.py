@@ -2,6 +2,7 @@
 
 import numpy as np
 import xarray as xr
+from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
@@ -117,7 +118,7 @@ def _add_detail(axes: Axes, course: xr.Dataset) -> None:
     axes.text(end + 0.01, high, "X", fontsize=8, va="bottom", color=palette.GREY)
 
 
-def _handles(inverse: bool) -> list:
+def _handles(inverse: bool) -> list[Artist]:
     dot = {"ls": "none", "marker": "o", "ms": 3.5, "mew": 0}
     return [
         Line2D([], [], color=palette.RED, label="maxima, •", **dot),

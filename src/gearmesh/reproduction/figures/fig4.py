@@ -4,6 +4,7 @@ from collections.abc import Mapping
 
 import numpy as np
 import xarray as xr
+from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
@@ -173,7 +174,7 @@ def _shade_time(axes: Axes, period: np.ndarray, regime: np.ndarray) -> None:
         )
 
 
-def _handles() -> list:
+def _handles() -> list[Artist]:
     point = {"ls": "none", "ms": 4, "color": palette.INK}
     return [
         Line2D([], [], color=palette.RED, label=f"$y$, {V} of c •"),

@@ -37,7 +37,7 @@ def draw(cases: Mapping[float, xr.Dataset]) -> Figure:
         return empty()
     figure = Figure(figsize=(WIDTH, 4.8))
     axes = figure.add_axes((-0.1, -0.16, 1.12, 1.34), projection="3d")
-    places = {"A": [], "B": []}
+    places: dict[str, list[tuple[float, ...]]] = {"A": [], "B": []}
     for nu in reversed(_spaced(cases)):
         case = cases[nu]
         course = last_periods(case, 1)

@@ -1,6 +1,7 @@
 """Fig. 6: phase portraits of c-material with the printed damping and with five times as much."""
 
 from collections.abc import Mapping
+from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -44,7 +45,7 @@ def draw(printed: Mapping[float, xr.Dataset], strong: Mapping[float, xr.Dataset]
     if not all(portraits):
         return empty()
     figure = Figure(figsize=(WIDTH, 4.3))
-    space = figure.add_axes((-0.035, -0.03, 0.58, 1.04), projection="3d")
+    space: Any = figure.add_axes((-0.035, -0.03, 0.58, 1.04), projection="3d")
     plane = figure.add_axes((0.63, 0.12, 0.36, 0.72))
     for cases, (colour, _, point) in zip(portraits, LOOKS, strict=True):
         for nu, case in sorted(cases.items(), reverse=True):
@@ -92,7 +93,7 @@ def _within(cases: Mapping[float, xr.Dataset]) -> dict[float, xr.Dataset]:
 
 def _draw_point(axes: Axes, cases: Mapping[float, xr.Dataset], name: str, colour: str) -> None:
     """Draw the course of the switch from C_max to C_min over the tuning."""
-    track = []
+    track: list[tuple[float, ...]] = []
     for _, case in sorted(cases.items()):
         course = last_periods(case, 1)
         _, down = switches(course)

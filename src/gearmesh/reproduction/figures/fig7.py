@@ -1,5 +1,7 @@
 """Fig. 7: c-material with both dampings, in the phase plane and over two mesh periods."""
 
+from typing import Any
+
 import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
@@ -45,8 +47,8 @@ def draw(printed: xr.Dataset | None, strong: xr.Dataset | None) -> Figure:
         return empty()
     figure = Figure(figsize=(WIDTH, 6.8), layout="constrained")
     grid = figure.add_gridspec(1, 2, width_ratios=(1.0, 1.5))
-    planes = grid[0].subgridspec(2, 1).subplots(sharex=True, sharey=True)
-    courses = grid[1].subgridspec(len(ROWS), 1).subplots(sharex=True)
+    planes: Any = grid[0].subgridspec(2, 1).subplots(sharex=True, sharey=True)
+    courses: Any = grid[1].subgridspec(len(ROWS), 1).subplots(sharex=True)
     cases = [last_periods(case, PERIODS) for case in (printed, strong)]
     titles = ("a)  phase plane, $k_2$", f"b)  phase plane, $k_2$′ = {STRONGER} $k_2$")
     for axes, case, look, title in zip(planes, cases, LOOKS, titles, strict=True):

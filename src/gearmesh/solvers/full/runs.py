@@ -1,57 +1,46 @@
 """Integration of one run in the six coordinates: the solver for every problem.
 
-Taylor series of high order in steps that end exactly at every jump of the laws
-(`general_series`, `general_kernel`). It serves the problems that the reduced system leaves out
-(run-out, profile deviation, truncated Fourier stiffness), and checks the others.
+Taylor series of high order (`series`) in steps that end exactly at every jump of the laws
+(`kernel`). It serves the problems that the reduced system leaves out (run-out, profile deviation,
+truncated Fourier stiffness), and checks the others.
 """
 
-import itertools
 import math
+from collections.abc import Callable
+from dataclasses import replace
 
 import numpy as np
 from numba import njit
 
-from gearmesh.model import motion, stiffness
-from gearmesh.model.friction import follows_run_out, pairs_in_contact
-from gearmesh.model.motion import (
-    CONTACT_LOSS,
-    ROTATION_3,
-    Problem,
-    bearing_damping,
-    dynamic_force,
-    start,
-    sum_and_difference,
-)
-from gearmesh.solvers import response
+from gearmesh.model import stiffness
+from gearmesh.model.contact import CONTACT_LOSS, dynamic_force
+from gearmesh.model.friction import follows_run_out
+from gearmesh.model.motion import ROTATION_2, ROTATION_3, Y_2, Y_3, bearing_damping, start
+from gearmesh.model.problem import Branches, Problem, State
+from gearmesh.model.segments import segments
+from gearmesh.solvers import limits
 from gearmesh.solvers.compilation import persistent
-from gearmesh.solvers.full import kernel as general_kernel
-from gearmesh.solvers.full import roots as general_roots
-from gearmesh.solvers.full import series as general_series
-from gearmesh.solvers.full.kernel import SAMPLE, SUMMARY
+from gearmesh.solvers.full import kernel
+from gearmesh.solvers.full.measures import SAMPLE, SUMMARY
 from gearmesh.solvers.full.roots import MAX_DEGREE
-from gearmesh.solvers.full.series import CASE, MODE, STRETCH
-from gearmesh.solvers.response import EXTREMUM, LOOSENING, Response, Samples, assemble
+from gearmesh.solvers.full.series import CASE, CONTINUED, MODE, SEGMENT
+from gearmesh.solvers.response import EXTREMUM, LOOSENING, Companion, Response, Samples, assemble
 
 _EXTREMA_PER_PERIOD = 64
-_STEPS_PER_PERIOD = 2000
-
-# In radians of the fastest oscillation. The series of an oscillation too small for the error
-# control (an unexcited mode) still have to converge, else it grows from rounding.
-_LONGEST_STEP = 2.0
+# Steps between two returns to Python, which sees an interruption then: some 0.1 s.
+_MOST_TURNS = 10_000
 
 
-def _build_run(sources: str, cache: bool):
+def _build_run(key: str, cache: bool) -> Callable:
     @njit(cache=cache, nogil=True)
     def compiled(*arguments):
-        sources  # noqa: B018 (see persistent)
-        general_kernel.run(*arguments)
+        key  # noqa: B018 (see persistent)
+        return kernel.run(*arguments)
 
     return compiled
 
 
-_compiled_run = persistent(
-    _build_run, general_roots, general_series, general_kernel, motion, response
-)
+_compiled_run = persistent(_build_run)
 
 
 def integrate(
@@ -74,66 +63,124 @@ def integrate(
         Degree of the Taylor polynomials, 4 to 28; by default what suits the tolerance.
     estimate_errors : bool
         Whether the run has a companion, `LOOSENING` times less accurate and displaced by the
-        tolerance at the start, whose difference gives `Response.y_max_error` and `y_min_error`.
-        Costs as much as the run.
+        tolerance at the start, whose difference gives `Response.y_max_error`, `y_min_error` and
+        `sensitive`. Costs as much as the run.
 
     Returns
     -------
     Response
         A run that fails has a status other than ``"ok"``.
     """
-    summary, state, strobes, extrema, samples = _run(
-        problem, tolerance, samples_per_period, order or suitable_order(tolerance)
-    )
+    run = _Run(problem, tolerance, samples_per_period, order or suitable_order(tolerance))
     companion = None
     if estimate_errors:
         loose = tolerance * LOOSENING
-        companion, *_ = _run(problem, loose, 0, order or suitable_order(loose), tolerance)
+        other = _Run(problem, loose, 0, order or suitable_order(loose), tolerance)
+        companion = Companion(other.summary, other.strobes)
     return assemble(
-        summary,
+        problem,
+        run.summary,
+        run.strobes,
+        run.extrema,
+        run.final_state(),
         companion,
-        strobes,
-        extrema,
-        problem.period,
-        problem.kept_revolutions * problem.teeth,
-        sum_and_difference(state[:6], state[6:]),
         tolerance,
-        _samples(samples) if samples_per_period else None,
+        _samples(run.samples) if samples_per_period else None,
+        run.rotation_drift,
     )
 
 
-def _run(
-    problem: Problem,
-    tolerance: float,
-    samples_per_period: int,
-    order: int,
-    displacement: float = 0.0,
-):
-    """Return the summary, the final state, strobes, extrema and samples of one run."""
-    periods = problem.revolutions * problem.teeth
-    kept = problem.kept_revolutions * problem.teeth
-    strobes = np.zeros((periods + 1, 2))
-    extrema = np.zeros(_EXTREMA_PER_PERIOD * kept, EXTREMUM)
-    samples = np.zeros(samples_per_period * kept, SAMPLE)
-    summaries = np.zeros(1, SUMMARY)
-    summaries["y_max"], summaries["y_min"] = -np.inf, np.inf
-    state = np.concatenate(start(problem))
-    state[ROTATION_3] += displacement
-    _compiled_run(
-        _case(problem, tolerance, order),
-        _stretches(problem),
-        _waves(problem),
-        np.array(problem.deviation, float).reshape(-1, 2),
-        state,
-        np.zeros(1, MODE),
-        strobes,
-        extrema,
-        samples,
-        samples_per_period,
-        summaries,
-    )
-    summary = summaries[0]
-    return summary, state, strobes, extrema[: summary["extrema"]], samples
+class _Run:
+    """A run from its start to its end; `displacement` displaces wheel 3 at the start.
+
+    If the run has more extrema than there is room for, it is integrated again with room for all.
+    """
+
+    def __init__(
+        self,
+        problem: Problem,
+        tolerance: float,
+        samples_per_period: int,
+        order: int,
+        displacement: float = 0.0,
+    ) -> None:
+        self.problem = problem
+        self._arguments = (
+            _case(problem, tolerance, order),
+            _segments(problem),
+            _waves(problem),
+            np.array(problem.deviation, float).reshape(-1, 2),
+        )
+        self.start = np.concatenate(start(problem))
+        self.start[ROTATION_3] += displacement
+        self._integrate(samples_per_period, _EXTREMA_PER_PERIOD * problem.kept_periods)
+        found = self.summary["extrema"]
+        if found > self.extrema.size:
+            self._integrate(samples_per_period, found)
+        self.extrema = self.extrema[:found]
+
+    def _integrate(self, samples_per_period: int, room: int) -> None:
+        summaries = np.zeros(1, SUMMARY)
+        summaries["y_max"], summaries["y_min"] = -np.inf, np.inf
+        self.summary = summaries[0]
+        self.state = self.start.copy()
+        self.mode = _mode(self.problem)
+        self.strobes = np.zeros((self.problem.periods + 1, 2))
+        self.extrema = np.zeros(room, EXTREMUM)
+        self.samples = np.zeros(samples_per_period * self.problem.kept_periods, SAMPLE)
+        while not _compiled_run(
+            *self._arguments,
+            self.state,
+            self.mode,
+            self.strobes,
+            self.extrema,
+            self.samples,
+            samples_per_period,
+            summaries,
+            _MOST_TURNS,
+        ):
+            pass
+
+    def final_state(self) -> State:
+        """Return the state at the end of the run."""
+        problem, mode = self.problem, self.mode[0]
+        b, b_rate = (self.state[[Y_3, 6 + Y_3]] - self.state[[Y_2, 6 + Y_2]]).tolist()
+        y, v = self.strobes[-1].tolist()
+        branches = Branches(
+            problem=replace(problem, initial_state=None),
+            regime=int(mode["regime"]),
+            direction=float(mode["direction"]),
+            measured=problem.kept_revolutions > 0,
+            signs=(float(mode["run_out_sign"]), float(mode["slip_sign"])),
+            level=float(mode["level"]),
+            exact=tuple(bool(mode[name]) for name in _EXACT),
+        )
+        periods = problem.start_period + problem.periods
+        return State(y, v, b, b_rate, tuple(self.state.tolist()), periods, branches)
+
+    @property
+    def rotation_drift(self) -> float:
+        """What (phi_3 - phi_2)/2 has gained, in rad."""
+        gained = self.state - self.start
+        return 0.5 * float(gained[ROTATION_3] - gained[ROTATION_2]) / self.problem.base_radius
+
+
+_EXACT = ("turns", "on_level", "on_bracket", "released")
+
+
+def _mode(problem: Problem) -> np.ndarray:
+    """Return where the run stands at its start, with the branches of a run before it."""
+    mode = np.zeros(1, MODE)
+    state = problem.initial_state
+    branches = state.branches_for(problem) if state and state.coordinates else None
+    if branches is not None:
+        mode["stage"] = CONTINUED
+        mode["regime"], mode["direction"] = branches.regime, branches.direction
+        mode["run_out_sign"], mode["slip_sign"] = branches.signs
+        mode["level"] = branches.level
+        for name, value in zip(_EXACT, branches.exact, strict=True):
+            mode[name] = value
+    return mode
 
 
 def suitable_order(tolerance: float) -> int:
@@ -160,48 +207,31 @@ def _case(problem: Problem, tolerance: float, order: int) -> np.ndarray:
     case["friction"] = problem.friction_coefficient
     case["middle_arm"] = math.tan(problem.pressure_angle)
     case["base_pitch"] = 2.0 * math.pi / problem.teeth
-    case["has_run_out"] = problem.eccentricity_3 != 0.0 or problem.eccentricity_2 != 0.0
+    case["has_run_out"] = problem.has_run_out
     case["follows_run_out"] = problem.friction_coefficient != 0.0 and follows_run_out(
         problem.eccentricity_3, problem.eccentricity_2
     )
-    case["periods"] = problem.revolutions * problem.teeth
-    case["first_kept"] = case["periods"] - problem.kept_revolutions * problem.teeth
+    case["start_period"] = problem.start_period
+    case["periods"] = problem.periods
+    case["first_kept"] = problem.periods - problem.kept_periods
     case["tolerance"] = tolerance
-    case["longest_step"] = _LONGEST_STEP / _highest_frequency(problem)
+    case["longest_step"] = limits.longest_step(problem)
+    case["farthest"] = limits.farthest(problem)
+    case["most_steps"] = limits.most_steps(problem)
     case["order"] = order
-    per_period = _STEPS_PER_PERIOD + 20 * (problem.stiffness_harmonics + len(problem.deviation))
-    case["most_steps"] = per_period * case["periods"]
     return case
 
 
-def _highest_frequency(problem: Problem) -> float:
-    """Return a bound of the natural frequencies in contact: the trace of the coupled stiffness."""
-    mesh = problem.stiffness_max * (1.0 + 2.0 / problem.body_mass)
-    return math.sqrt(mesh + problem.bearing_stiffness / problem.body_mass)
-
-
-def _stretches(problem: Problem) -> np.ndarray:
-    """Return the parts of a mesh period, from its boundary at the initial phase."""
-    places: set[float] = set()
-    if not problem.stiffness_harmonics or problem.friction_coefficient:
-        places.update(stiffness.switch_phases(problem.contact_ratio))
-    if problem.friction_coefficient:
-        places.add(0.5)
-    phase = problem.initial_phase
-    edges = [0.0, *sorted((place - phase) % 1.0 for place in places), 1.0]
+def _segments(problem: Problem) -> np.ndarray:
+    """Return the segments of a mesh period as the kernel takes them."""
     parts = []
-    for low, high in itertools.pairwise(edges):
-        if low == high:
-            continue
-        middle = 0.5 * (low + high) + phase
-        pairs = pairs_in_contact(middle, problem.contact_ratio)
+    for part in segments(problem):
         level = stiffness.rectangular(
-            middle, problem.contact_ratio, problem.stiffness_max, problem.stiffness_min
+            part.middle, problem.contact_ratio, problem.stiffness_max, problem.stiffness_min
         )
-        gamma = sum(gamma for gamma, _ in pairs)
-        sigma = pairs[0][1] - 0.5 * (low + high)
-        parts.append((high * problem.period, level, gamma, sigma))
-    return np.array(parts, STRETCH)
+        sigma = part.pairs[0].sigma - 0.5 * (part.start + part.end)
+        parts.append((part.end * problem.period, level, part.gamma, sigma))
+    return np.array(parts, SEGMENT)
 
 
 def _waves(problem: Problem) -> np.ndarray:

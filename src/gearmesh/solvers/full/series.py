@@ -9,7 +9,9 @@ Experimental Mathematics 14, 2005).
 
 import numpy as np
 
-from gearmesh.model.motion import CONTACT_LOSS, INVERSE_MESH, WHEEL_INERTIA, Y_2, Y_3, Z_2, Z_3
+from gearmesh.model.contact import CONTACT_LOSS, INVERSE_MESH
+from gearmesh.model.friction import holding_force
+from gearmesh.model.motion import WHEEL_INERTIA, Y_2, Y_3, Z_2, Z_3
 from gearmesh.solvers.compilation import inner
 from gearmesh.solvers.full.roots import MAX_DEGREE
 
@@ -36,20 +38,22 @@ CASE = np.dtype(
         ("eccentricity_angle", np.float64),
         ("has_run_out", np.bool_),
         ("follows_run_out", np.bool_),
+        ("start_period", np.int64),
         ("periods", np.int64),
         ("first_kept", np.int64),
         ("tolerance", np.float64),
         ("longest_step", np.float64),
         ("order", np.int64),
-        ("most_steps", np.int64),
+        ("farthest", np.float64),
+        ("most_steps", np.float64),
     ]
 )
-"""One run as the kernel takes it: `gearmesh.model.motion.Problem` and the settings of the solver.
+"""One run as the kernel takes it: `gearmesh.model.problem.Problem` and the settings of the solver.
 
 `middle_arm` (tan alpha) and `base_pitch` are in R_b.
 """
 
-STRETCH = np.dtype(
+SEGMENT = np.dtype(
     [
         ("end", np.float64),
         ("stiffness", np.float64),
@@ -57,7 +61,7 @@ STRETCH = np.dtype(
         ("sigma", np.float64),
     ]
 )
-"""Part of a mesh period without jumps of C(t) and gamma(t).
+"""A segment of the mesh period (`gearmesh.model.segments`).
 
 `end` is its end in tau_s from the boundary of the period, `gamma` is summed over the pairs (0: two
 pairs), and `sigma` is where the boundary of the period lies on the path of a single pair, in base
@@ -66,8 +70,9 @@ pitches from the pitch point.
 
 MODE = np.dtype(
     [
+        ("stage", np.int64),
         ("period", np.int64),
-        ("stretch", np.int64),
+        ("segment", np.int64),
         ("time", np.float64),
         ("regime", np.int64),
         ("direction", np.float64),
@@ -82,11 +87,15 @@ MODE = np.dtype(
 )
 """Where a run stands: `time` since the boundary of the period, and the branch of every law.
 
+`stage` tells a run that has not begun from one whose branches are known, and from one under way.
 `direction` is the sign of y' (0 before the first motion) and `level` the value of y passed last.
 `turns`, `on_level` and `on_bracket` say that y', y - `level` and the bracket of eq. (6) are 0
 exactly, whatever rounding has left of them in the coordinates; `released`, that sticking has just
 ended.
 """
+
+NEW, CONTINUED, UNDER_WAY = range(3)
+"""Stages of a run."""
 
 Y, V, SQUARE, ELASTIC, NORMAL, STIFFNESS, FRICTION, BRACKET = range(6, 14)
 SINE_3, COSINE_3, ANGLE_3, SINE_2, COSINE_2, ANGLE_2, DEVIATION = range(14, 21)
@@ -95,6 +104,8 @@ N_ROWS = 21
 
 ANGLE_3 is Phi_3, ANGLE_2 is Delta - Phi_2.
 """
+
+_holding_force = inner(holding_force)
 
 SERIES_SHAPE = (N_ROWS, MAX_DEGREE + 1)
 
@@ -188,7 +199,7 @@ def begin(case, mode, state, waves, deviation, series):
         series[STIFFNESS, 0] += case.stiffness_mean
     for i in range(6):
         series[i, 0], series[i, 1] = state[i], state[6 + i]
-    mean_angle = (angle + 2.0 * np.pi * mode.period) / case.teeth
+    mean_angle = (angle + 2.0 * np.pi * (case.start_period + mode.period)) / case.teeth
     _extend_relative_motion(case, series, 0, mean_angle)
     _extend_relative_motion(case, series, 1, mean_angle)
     if mode.on_level:
@@ -200,16 +211,16 @@ def begin(case, mode, state, waves, deviation, series):
 
 
 @inner
-def elastic_coefficient(case, stretch, mode, series, fourier, k):
+def elastic_coefficient(case, segment, mode, series, fourier, k):
     """Return the k-th coefficient of the elastic force."""
     if mode.regime == CONTACT_LOSS:
         return 0.0
     if k == 0:
         offset = -case.backlash if mode.regime == INVERSE_MESH else 0.0
         penetration = 0.0 if mode.on_level else series[Y, 0] - offset
-        return (series[STIFFNESS, 0] if fourier else stretch.stiffness) * penetration
+        return (series[STIFFNESS, 0] if fourier else segment.stiffness) * penetration
     if not fourier:
-        return stretch.stiffness * series[Y, k]
+        return segment.stiffness * series[Y, k]
     total = _product(series[STIFFNESS], series[Y], k)
     if mode.regime == INVERSE_MESH:
         total += case.backlash * series[STIFFNESS, k]
@@ -229,23 +240,23 @@ def _damping(law, direction, series, k):
 
 
 @inner
-def _friction(case, stretch, mode, series, k):
+def _friction(case, segment, mode, series, k):
     """Return the k-th coefficients of F_T and of the moments on both wheels over R_b."""
-    if stretch.gamma == 0.0:
+    if segment.gamma == 0.0:
         # Two pairs half the load each; the arms differ by a base pitch.
         signs = mode.run_out_sign * mode.slip_sign
         couple = 0.5 * case.base_pitch * case.friction * signs * series[ELASTIC, k]
         series[FRICTION, k] = 0.0
         return 0.0, -couple, couple
     if mode.slip_sign == 0.0:
-        force = 0.5 * case.bearing_stiffness * (series[Z_3, k] - series[Z_2, k])
+        pull = case.bearing_stiffness * (series[Z_3, k] - series[Z_2, k])
         rate = (k + 1.0) * (series[Z_3, k + 1] - series[Z_2, k + 1])
-        force += 0.5 * case.bearing_damping * rate
+        force = _holding_force(pull + case.bearing_damping * rate)
     else:
         signs = mode.run_out_sign * mode.slip_sign
-        force = -case.friction * stretch.gamma * signs * series[ELASTIC, k]
+        force = -case.friction * segment.gamma * signs * series[ELASTIC, k]
     series[FRICTION, k] = force
-    shift = case.base_pitch * (stretch.sigma + mode.time / case.period) * force
+    shift = case.base_pitch * (segment.sigma + mode.time / case.period) * force
     if k > 0:
         shift += case.base_pitch / case.period * series[FRICTION, k - 1]
     return force, -(case.middle_arm * force + shift), -(case.middle_arm * force - shift)
@@ -266,16 +277,16 @@ def _lever(case, series, wheel, k):
 
 
 @inner
-def expand(case, stretch, mode, fourier, series, order):
+def expand(case, segment, mode, fourier, series, order):
     """Fill the series up to `order`, from what `begin` wrote."""
     law = case.lubricant if mode.regime == CONTACT_LOSS else case.material
     for k in range(order - 1):
-        series[ELASTIC, k] = elastic_coefficient(case, stretch, mode, series, fourier, k)
+        series[ELASTIC, k] = elastic_coefficient(case, segment, mode, series, fourier, k)
         normal = series[ELASTIC, k] + _damping(law, mode.direction, series, k)
         series[NORMAL, k] = normal
         force = moment_3 = moment_2 = 0.0
         if case.friction != 0.0:
-            force, moment_3, moment_2 = _friction(case, stretch, mode, series, k)
+            force, moment_3, moment_2 = _friction(case, segment, mode, series, k)
         load = 1.0 if k == 0 else 0.0
         over = 1.0 / ((k + 1.0) * (k + 2.0))
         series[0, k + 2] = (load - _lever(case, series, 3, k) + moment_3) / WHEEL_INERTIA * over

@@ -6,17 +6,18 @@ function for its first change of sign:
 - y itself, measured from the level where the flanks part, while they touch, turning points do not
   count (before the kept revolutions) and do not bend the damping (no |v| v);
 - v otherwise. Up to the first turning point y is monotone, so it passes a level at most once, and
-  a look at y tells whether it has.
+  the value of y shows whether it has.
 
-Either way an orbit that dips through y = 0 and returns within a step (grazing) is seen. What is
-watched is looked at in `N_PLACES` places; between two of them a pair of changes of sign can hide
-only where it has a minimum. The two tangents bound that minimum from below, and where they meet
-below 0 it is computed.
+Either way an orbit that dips through y = 0 and returns within a step (grazing) is found. The
+function is evaluated at `N_PLACES` places; between two of them a pair of changes of sign can hide
+only where the function has a minimum. The two tangents bound that minimum from below, and where
+they meet below 0 it is computed.
 """
 
 from gearmesh.solvers.compilation import inner
-from gearmesh.solvers.lanes import any_lane, fma, load, magnitude, select, spread, store
-from gearmesh.solvers.reduced.taylor import REST, evaluate_with_twist, look
+from gearmesh.solvers.lanes.operations import any_lane, fma, magnitude, select, spread
+from gearmesh.solvers.lanes.rows import load, store
+from gearmesh.solvers.reduced.taylor import REST, evaluate_places, evaluate_with_twist
 from gearmesh.solvers.reduced.workspace import (
     EVENT,
     GUARD,
@@ -24,18 +25,18 @@ from gearmesh.solvers.reduced.workspace import (
     LEVEL_BELOW,
     N_PLACES,
     OFFSET,
+    PLACE_HALF_A,
+    PLACE_V,
+    PLACE_Y,
     REMAINING,
-    SEEN_HALF_A,
-    SEEN_V,
-    SEEN_Y,
     SIGN,
     STEP,
     TAKEN,
     Y,
 )
 
-PASSED, TURNED, CROSSED, STOPPED = 0.0, 1.0, 2.0, 3.0
-"""What ends a step: nothing but its length, a turning point, a level, a stop."""
+PASSED, TURNED, CROSSED, SEGMENT_ENDED = 0.0, 1.0, 2.0, 3.0
+"""What ends a step: its length alone, a turning point, a level, the end of the segment."""
 
 _SETTLED = 1e-14
 # Far enough for the value at the minimum, which is flat there.
@@ -70,14 +71,14 @@ def _dip(like, work, guards, side, floor, suspect, low, high):
 
 @inner(inline="never")
 def bracket(like, work, guards, side, floor, level):
-    """Find the first stretch of the step in which what is watched falls, or `level` is passed.
+    """Find the first part of the step in which what is watched falls, or `level` is passed.
 
     Returns
     -------
     found, passed : mask
         Whether what is watched falls through 0; whether y, still on its way, passes the level.
     low, high : lanes
-        The ends of the stretch.
+        The ends of that part.
     guess : lanes
         Where the secant puts the root.
     """
@@ -92,18 +93,18 @@ def bracket(like, work, guards, side, floor, level):
     before = side * select(guards, y - floor, v)
     slope_before = side * select(guards, v, 2.0 * load(like, work, Y + 2))
     room_before = sign * (level - y)
-    look(like, work)
+    evaluate_places(like, work)
     for j in range(N_PLACES):
-        y, v = load(like, work, SEEN_Y + j), load(like, work, SEEN_V + j)
+        y, v = load(like, work, PLACE_Y + j), load(like, work, PLACE_V + j)
         value = side * select(guards, y - floor, v)
-        slope = side * select(guards, v, 2.0 * load(like, work, SEEN_HALF_A + j))
+        slope = side * select(guards, v, 2.0 * load(like, work, PLACE_HALF_A + j))
         room = sign * (level - y)
         ahead = ~(found | passed)
         falls = (value < -rest) & ahead
         passes = (room < zero) & ahead & ~falls & ~guards
         dips = (slope_before < zero) & (slope > zero) & (value >= zero) & ahead
         if any_lane(dips):
-            # Where the tangents of both ends meet: below the minimum of a convex course.
+            # Where the tangents of both ends meet: below the minimum of a convex function.
             where = (value - before - slope * width) / (slope_before - slope)
             suspect = dips & (fma(slope_before, where, before) <= zero)
             if any_lane(suspect):
@@ -181,8 +182,8 @@ def find_event(like, work):
     side = select(guards, guard, sign)
     level = select(sign > zero, load(like, work, LEVEL_ABOVE), load(like, work, LEVEL_BELOW))
     found, passed, low, high, guess = bracket(like, work, guards, side, floor, level)
-    stopped = step >= load(like, work, REMAINING)
-    event = select(stopped, spread(like, STOPPED), spread(like, PASSED))
+    ends = step >= load(like, work, REMAINING)
+    event = select(ends, spread(like, SEGMENT_ENDED), spread(like, PASSED))
     end = step
     if any_lane(found | passed):
         turned = found & ~guards

@@ -2,252 +2,259 @@
 
 import math
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 from functools import cached_property, lru_cache
-from itertools import accumulate, pairwise
-from typing import NamedTuple
 
 import numpy as np
 from numba import njit
 
-from gearmesh.model import motion
-from gearmesh.model.friction import mesh_gamma
-from gearmesh.model.motion import Problem
-from gearmesh.model.stiffness import in_double_contact, switch_phases
-from gearmesh.solvers import lanes, response
+from gearmesh.model.contact import CONTACT_LOSS, INVERSE_MESH, dynamic_force, regime_of
+from gearmesh.model.problem import Branches, Problem, State
+from gearmesh.model.segments import Segment, segments
+from gearmesh.solvers import limits
 from gearmesh.solvers.compilation import persistent
-from gearmesh.solvers.reduced import events, stops, sweep, taylor, workspace
-from gearmesh.solvers.response import LOOSENING, Response, assemble
+from gearmesh.solvers.lanes.operations import WIDEST, zeros1, zeros8
+from gearmesh.solvers.lanes.rows import pointer_to
+from gearmesh.solvers.reduced.measures import SAMPLED
+from gearmesh.solvers.reduced.records import RUN, SUMMARY
+from gearmesh.solvers.reduced.sweep import ENDED, PROGRESS, sweep
+from gearmesh.solvers.reduced.workspace import MAX_SEGMENTS, N_ROWS
+from gearmesh.solvers.response import EXTREMUM, LOOSENING, Companion, Response, assemble
 
 _EXTREMA_PER_PERIOD = 64
-# Equal wheels: the pitch point halves the single contact.
-_PITCH_PHASE = 0.5
 # Samples that are closer to a switch than rounding can tell are on it.
 _ON_EDGE = 1e-9
+# Steps between two returns to Python, which sees an interruption then: some 0.1 s.
+_MOST_TURNS = 100_000
 
 
-def _build_vector_sweep(sources: str, cache: bool):
+def _build_vector_sweep(key: str, cache: bool) -> Callable:
     @njit(cache=cache, nogil=True)
-    def compiled(work, runs, summaries, strobes, extrema, samples, samples_per_period):
-        sources  # noqa: B018 (see persistent)
-        sweep.sweep(
-            lanes.zeros8(),
-            lanes.pointer_to(work),
-            runs,
-            summaries,
-            strobes,
-            extrema,
-            samples,
-            samples_per_period,
-        )
+    def compiled(work, *arguments):
+        key  # noqa: B018 (see persistent)
+        return sweep(zeros8(), pointer_to(work), *arguments)
 
     return compiled
 
 
-def _build_scalar_sweep(sources: str, cache: bool):
+def _build_scalar_sweep(key: str, cache: bool) -> Callable:
     @njit(cache=cache, nogil=True)
-    def compiled(work, runs, summaries, strobes, extrema, samples, samples_per_period):
-        sources  # noqa: B018 (see persistent)
-        sweep.sweep(
-            lanes.zeros1(),
-            lanes.pointer_to(work),
-            runs,
-            summaries,
-            strobes,
-            extrema,
-            samples,
-            samples_per_period,
-        )
+    def compiled(work, *arguments):
+        key  # noqa: B018 (see persistent)
+        return sweep(zeros1(), pointer_to(work), *arguments)
 
     return compiled
 
 
-_MODULES = (lanes, workspace, taylor, events, stops, motion, response, sweep)
-_vector_sweep = persistent(_build_vector_sweep, *_MODULES)
+_vector_sweep = persistent(_build_vector_sweep)
 # A run alone keeps one lane busy; there scalar instructions are faster, and as exact.
-_scalar_sweep = persistent(_build_scalar_sweep, *_MODULES)
+_scalar_sweep = persistent(_build_scalar_sweep)
 
 
 def is_reducible(problem: Problem) -> bool:
-    """Tell whether a problem has no run-out, profile deviation or Fourier stiffness."""
-    run_out = problem.eccentricity_3 != 0.0 or problem.eccentricity_2 != 0.0
-    return not (run_out or problem.deviation or problem.stiffness_harmonics)
+    """Return whether a problem has no run-out, profile deviation or Fourier stiffness."""
+    return not (problem.has_run_out or problem.deviation or problem.stiffness_harmonics)
 
 
-class Stretch(NamedTuple):
-    """A stretch of the mesh period in which stiffness and friction do not change.
+def integrate(
+    problems: Sequence[Problem],
+    tolerance: float,
+    samples_per_period: int,
+    estimate_errors: bool,
+    extrema_per_period: int = _EXTREMA_PER_PERIOD,
+) -> list[Response]:
+    """Integrate reducible problems; see `gearmesh.solvers.simulation.simulate`.
 
-    Attributes
-    ----------
-    length : float
-        In mesh periods.
-    double : bool
-        Whether two pairs of teeth are in contact.
-    gamma : float
-        Of eq. (6), over all pairs in contact.
+    The runs of which a kept period has more than `extrema_per_period` extrema on average are
+    integrated again with room for all of them.
     """
+    n = len(problems)
+    runs = _runs(problems, tolerance, samples_per_period, estimate_errors)
+    kept = max(problem.kept_periods for problem in problems)
+    summaries = np.zeros(len(runs), SUMMARY)
+    summaries["y_max"], summaries["y_min"] = -np.inf, np.inf
+    strobes = np.empty((len(runs), int(runs["periods"].max()) + 1, 2))
+    extrema = np.empty((n, extrema_per_period * kept), EXTREMUM)
+    sampled = n if samples_per_period else 0
+    samples = np.empty((sampled, SAMPLED, kept * samples_per_period + WIDEST))
+    _sweep(runs, summaries, strobes, extrema, samples, samples_per_period)
+    measured = [dict(zip(SUMMARY.names, values, strict=True)) for values in summaries.tolist()]
+    responses = []
+    for i, problem in enumerate(problems):
+        found, boundaries = measured[i], problem.periods + 1
+        companion = None
+        if estimate_errors:
+            companion = Companion(measured[n + i], strobes[n + i, :boundaries])
+        if found["extrema"] > extrema.shape[1]:
+            room = math.ceil(found["extrema"] / problem.kept_periods)
+            responses += integrate([problem], tolerance, samples_per_period, estimate_errors, room)
+            continue
+        responses.append(
+            assemble(
+                problem,
+                found,
+                strobes[i, :boundaries],
+                extrema[i, : found["extrema"]],
+                _final_state(problem, found),
+                companion,
+                tolerance,
+                _Samples(problem, samples[i], samples_per_period) if sampled else None,
+            )
+        )
+    return responses
 
-    length: float
-    double: bool
-    gamma: float
 
-
-def _pattern(problem: Problem) -> tuple[float, float, bool]:
-    """Return what the stretches of a mesh period depend on."""
-    return problem.contact_ratio, problem.initial_phase, problem.friction_coefficient != 0.0
-
-
-@lru_cache
-def _stretches(contact_ratio: float, initial_phase: float, friction: bool) -> list[Stretch]:
-    """Cut a mesh period at every switch, and at the pitch point where friction turns."""
-    places = [*switch_phases(contact_ratio), *([_PITCH_PHASE] if friction else [])]
-    edges = [0.0, *sorted((place - initial_phase) % 1.0 for place in places), 1.0]
-    stretches = []
-    for start, end in pairwise(edges):
-        if end > start:
-            middle = (0.5 * (start + end) + initial_phase) % 1.0
-            double = bool(in_double_contact(middle, contact_ratio))
-            stretches.append(Stretch(end - start, double, mesh_gamma(middle, contact_ratio)))
-    return stretches
-
-
-@lru_cache
-def _sample_ends(pattern: tuple[float, float, bool], per_period: int) -> list[int]:
-    """Return the number of the first sample behind each stretch; one at its end is behind it."""
-    edges = accumulate(stretch.length for stretch in _stretches(*pattern))
-    return [math.ceil(edge * per_period - _ON_EDGE) for edge in edges]
+def _runs(
+    problems: Sequence[Problem], tolerance: float, samples_per_period: int, estimate_errors: bool
+) -> np.ndarray:
+    """Return the runs in the form that the sweep takes, their companions behind them."""
+    n = len(problems)
+    rows = [_run(problem, tolerance, samples_per_period) for problem in problems]
+    runs = np.array(rows + rows if estimate_errors else rows).view(RUN)[:, 0]
+    companions = runs[n:]
+    companions["log_tolerance"] = math.log2(tolerance * LOOSENING)
+    # Displaced in the rotation, they show a sensitive orbit even where events decide the steps.
+    start = companions["start"]
+    start[:, 0] = ((start[:, 0] - start[:, 2]) + tolerance) + start[:, 2]
+    companions["regime"] = regime_of(start[:, 0], companions["backlash"])
+    companions["direction"] = 0.0
+    return runs
 
 
 def _run(problem: Problem, tolerance: float, samples_per_period: int) -> list[float]:
-    """Return `problem` in the form that the compiled sweep takes, a row of `sweep.RUN`."""
-    period = problem.period
-    pattern = _pattern(problem)
-    stretches = _stretches(*pattern)
+    """Return `problem` in the form that the compiled sweep takes, a row of `RUN`."""
+    period, parts = problem.period, segments(problem)
     friction = problem.friction_coefficient * math.tan(problem.pressure_angle)
-    rest = [0.0] * (workspace.MAX_SEGMENTS - len(stretches))
+    rest = [0.0] * (MAX_SEGMENTS - len(parts))
     high, low = problem.stiffness_max, problem.stiffness_min
-    periods = problem.revolutions * problem.teeth
     frequency = math.sqrt(problem.bearing_stiffness / problem.body_mass)
-    bearing = -2.0 / problem.bearing_stiffness
+    start, regime, direction = _start(problem)
     return [
-        len(stretches),
-        *[stretch.length * period for stretch in stretches],
+        len(parts),
+        *[part.length * period for part in parts],
         *rest,
-        *[high if stretch.double else low for stretch in stretches],
+        *[high if part.double else low for part in parts],
         *rest,
-        *[friction * stretch.gamma for stretch in stretches],
+        *[friction * part.gamma for part in parts],
         *rest,
-        *_sample_ends(pattern, samples_per_period),
+        *_sample_ends(parts, samples_per_period),
         *rest,
         period,
-        periods,
-        periods - problem.kept_revolutions * problem.teeth,
+        problem.periods,
+        problem.periods - problem.kept_periods,
         *problem.material,
         *problem.lubricant,
         problem.backlash,
         2.0 / problem.body_mass,
         frequency**2,
         2.0 * problem.bearing_damping_ratio * frequency,
-        *(problem.initial_state or (1.0 - bearing, 0.0, bearing, 0.0)),
+        *start,
+        regime,
+        direction,
+        limits.longest_step(problem),
+        limits.farthest(problem),
+        limits.most_steps(problem),
         math.log2(tolerance),
-        _EXTREMA_PER_PERIOD * problem.kept_revolutions * problem.teeth,
     ]
 
 
-def integrate(
-    problems: Sequence[Problem], tolerance: float, samples_per_period: int, estimate_errors: bool
-) -> list[Response]:
-    """Integrate reducible problems; see `gearmesh.solvers.simulation.simulate`."""
-    n = len(problems)
-    rows = [_run(problem, tolerance, samples_per_period) for problem in problems]
-    # Companions follow the runs and leave nothing but their summaries.
-    runs = np.array(rows + rows if estimate_errors else rows).view(sweep.RUN)[:, 0]
-    runs["log_tolerance"][n:] = math.log2(tolerance * LOOSENING)
-    # Displaced, they tell of a sensitive orbit even where stops decide the steps, not tolerances.
-    runs["start"][n:, 0] += tolerance
-    kept = max(problem.kept_revolutions * problem.teeth for problem in problems)
-    summaries = np.zeros(len(runs), sweep.SUMMARY)
-    summaries["y_max"] = -np.inf
-    summaries["y_min"] = np.inf
-    strobes = np.empty((n, int(runs["periods"].max()) + 1, 2))
-    extrema = np.empty((n, int(runs["most_extrema"].max())), response.EXTREMUM)
-    sampled = n if samples_per_period else 0
-    row = kept * samples_per_period + lanes.WIDEST
-    samples = np.empty((sampled, sweep.SAMPLED, row))
-    sweep_runs = _scalar_sweep if len(runs) == 1 else _vector_sweep
-    sweep_runs(_workspace(), runs, summaries, strobes, extrema, samples, samples_per_period)
-    measured = [
-        dict(zip(sweep.SUMMARY.names, values, strict=True)) for values in summaries.tolist()
-    ]
-    return [
-        assemble(
-            measured[i],
-            measured[n + i] if estimate_errors else None,
-            strobes[i, : problem.revolutions * problem.teeth + 1],
-            extrema[i, : measured[i]["extrema"]],
-            problem.period,
-            problem.kept_revolutions * problem.teeth,
-            tuple(measured[i]["final"]),
-            tolerance,
-            _Samples(problem, samples[i], samples_per_period) if sampled else None,
-        )
-        for i, problem in enumerate(problems)
-    ]
+def _start(problem: Problem) -> tuple[tuple[float, float, float, float], float, float]:
+    """Return (y, y', b, b'), the regime and the direction of motion at the start."""
+    state = problem.initial_state
+    if state is None:
+        b = -2.0 / problem.bearing_stiffness
+        y = (1.0 - b) + b
+        return (y, 0.0, b, 0.0), regime_of(y, problem.backlash), 0.0
+    start = state.y, state.v, state.b, state.b_rate
+    branches = state.branches_for(problem)
+    if branches is None:
+        return start, regime_of(state.y, problem.backlash), 0.0
+    # Where measuring begins, directions were not followed before.
+    follows = branches.measured or problem.kept_revolutions < problem.revolutions
+    return start, branches.regime, branches.direction if follows else 0.0
+
+
+@lru_cache
+def _sample_ends(parts: tuple[Segment, ...], per_period: int) -> list[int]:
+    """Return the number of the first sample behind each segment; one at its end is behind it."""
+    return [math.ceil(part.end * per_period - _ON_EDGE) for part in parts]
+
+
+def _sweep(runs: np.ndarray, *arguments: object) -> None:
+    """Call the compiled sweep until all runs are over."""
+    progress = np.full(PROGRESS, -1, np.int64)
+    compiled, width = (_scalar_sweep, 1) if len(runs) == 1 else (_vector_sweep, WIDEST)
+    progress[WIDEST:] = 0
+    progress[ENDED] = (1 << width) - 1
+    work = _workspace()
+    while not compiled(work, runs, *arguments, progress, _MOST_TURNS):
+        pass
 
 
 def _workspace() -> np.ndarray:
     """Return the workspace of the sweep; a row that straddles two cache lines costs two loads."""
-    row = 8 * lanes.WIDEST
-    raw = np.zeros((workspace.N_ROWS + 1) * lanes.WIDEST)
+    row = 8 * WIDEST
+    raw = np.zeros((N_ROWS + 1) * WIDEST)
     first = -raw.ctypes.data % row // 8
-    return raw[first : first + workspace.N_ROWS * lanes.WIDEST]
+    return raw[first : first + N_ROWS * WIDEST]
+
+
+def _final_state(problem: Problem, summary: dict) -> State:
+    y, v, b, b_rate = summary["final"].tolist()
+    branches = Branches(
+        problem=problem if problem.initial_state is None else replace(problem, initial_state=None),
+        regime=int(summary["regime"]),
+        direction=summary["direction"],
+        measured=problem.kept_revolutions > 0,
+    )
+    periods = problem.start_period + problem.periods
+    return State(y, v, b, b_rate, periods=periods, branches=branches)
 
 
 class _Samples:
     """A time course like `response.Samples`; all but y, v and a is computed when asked for."""
 
-    def __init__(self, problem: Problem, rows: np.ndarray, per_period: int):
+    def __init__(self, problem: Problem, rows: np.ndarray, per_period: int) -> None:
         self._problem = problem
         self._per_period = per_period
-        self._kept = problem.kept_revolutions * problem.teeth
-        self.y, self.v, self.a = rows[:, : self._kept * per_period]
+        self.y, self.v, self.a = rows[:, : problem.kept_periods * per_period]
 
     @cached_property
     def time(self) -> np.ndarray:
-        first = (self._problem.revolutions - self._problem.kept_revolutions) * self._problem.teeth
+        first = self._problem.periods - self._problem.kept_periods
         spacing = self._problem.period / self._per_period
         return first * self._problem.period + np.arange(self.y.size) * spacing
 
     @cached_property
     def regime(self) -> np.ndarray:
-        problem = self._problem
-        flank = np.where(self.y <= -problem.backlash, motion.INVERSE_MESH, motion.CONTACT_LOSS)
-        return np.where(self.y >= 0.0, motion.NORMAL_MESH, flank).astype(np.int8)
+        return regime_of(self.y, self._problem.backlash).astype(np.int8)
 
     @cached_property
     def stiffness(self) -> np.ndarray:
         problem = self._problem
-        return self._of_stretches(
-            lambda stretch: problem.stiffness_max if stretch.double else problem.stiffness_min
+        return self._of_segments(
+            lambda part: problem.stiffness_max if part.double else problem.stiffness_min
         )
 
     @cached_property
     def modified_stiffness(self) -> np.ndarray:
-        return self.stiffness * (self.regime != motion.CONTACT_LOSS)
+        return self.stiffness * (self.regime != CONTACT_LOSS)
 
     @cached_property
     def force_dynamic(self) -> np.ndarray:
-        return motion.dynamic_force(self.y, self.stiffness)
+        return dynamic_force(self.y, self.stiffness)
 
     @cached_property
     def force_friction(self) -> np.ndarray:
         problem = self._problem
-        depth = self.y + problem.backlash * (self.regime == motion.INVERSE_MESH)
-        gamma = self._of_stretches(lambda stretch: stretch.gamma)
+        depth = self.y + problem.backlash * (self.regime == INVERSE_MESH)
+        gamma = self._of_segments(lambda part: part.gamma)
         return -problem.friction_coefficient * gamma * self.modified_stiffness * depth
 
-    def _of_stretches(self, value: Callable[[Stretch], float]) -> np.ndarray:
-        """Return what belongs to the stretches of a mesh period, for every sample."""
-        pattern = _pattern(self._problem)
-        values = [value(stretch) for stretch in _stretches(*pattern)]
-        counts = np.diff(_sample_ends(pattern, self._per_period), prepend=0)
-        return np.tile(np.repeat(values, counts), self._kept)
+    def _of_segments(self, value: Callable[[Segment], float]) -> np.ndarray:
+        """Return what belongs to the segments of a mesh period, for every sample."""
+        parts = segments(self._problem)
+        counts = np.diff(_sample_ends(parts, self._per_period), prepend=0)
+        return np.tile(
+            np.repeat([value(part) for part in parts], counts), self._problem.kept_periods
+        )

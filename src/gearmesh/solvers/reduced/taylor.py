@@ -14,18 +14,17 @@ products (Jorba and Zou, Experimental Mathematics 14, 2005).
 """
 
 from gearmesh.solvers.compilation import inner
-from gearmesh.solvers.lanes import (
+from gearmesh.solvers.lanes.operations import (
     COARSENESS,
     coarse_exp2,
     coarse_log2,
     fma,
-    load,
     magnitude,
     select,
     spread,
-    store,
-    unrolled,
 )
+from gearmesh.solvers.lanes.rows import load, store
+from gearmesh.solvers.lanes.unrolling import unrolled
 from gearmesh.solvers.reduced.workspace import (
     BEARING_DAMPING,
     BEARING_STIFFNESS,
@@ -39,11 +38,11 @@ from gearmesh.solvers.reduced.workspace import (
     N_PLACES,
     OFFSET,
     ORDER,
+    PLACE_HALF_A,
+    PLACE_V,
+    PLACE_Y,
     QUADRATIC,
     REMAINING,
-    SEEN_HALF_A,
-    SEEN_V,
-    SEEN_Y,
     SIGN,
     STEP,
     TWO_MU,
@@ -53,13 +52,6 @@ from gearmesh.solvers.reduced.workspace import (
 
 REST = 1e-14
 """Velocities and accelerations below this are rounding errors of a body at rest."""
-
-LONGEST_ANGLE = 2.0
-"""Bound of a step times the highest natural frequency.
-
-It keeps the sampling of a step for events fine, and the series of a mode that is hardly excited
-within its convergence: such a mode would grow from rounding errors unseen by the tolerance.
-"""
 
 
 @inner(inline="never")
@@ -198,9 +190,9 @@ def expand(like, work, powers):
 
 @inner(inline="never")
 def choose_step(like, work):
-    """Write the step at which the first terms left out reach the tolerance, to the next stop.
+    """Write the step at which the first terms left out reach the tolerance, within the segment.
 
-    Each of the last terms of v and b' tells a radius of convergence, for motion of the size of
+    Each of the last terms of v and b' gives a radius of convergence, for motion of the size of
     y_st (Jorba and Zou). The step leaves the term of degree ORDER, the first that v lacks, at the
     tolerance.
     """
@@ -218,7 +210,7 @@ def choose_step(like, work):
     store(work, STEP, step)
 
 
-def _look(rows):
+def _evaluate_places(rows):
     """Write y, v and half the acceleration at the places of the step, all in one pass."""
     places = rows[STEP].times_each([(j + 1) / N_PLACES for j in range(N_PLACES)])
     y, v, half_a = rows[Y + ORDER].repeated(N_PLACES), None, None
@@ -226,12 +218,12 @@ def _look(rows):
         half_a = v if half_a is None else half_a.times_plus(places, v)
         v = y if v is None else v.times_plus(places, y)
         y = y.times_plus(places, rows[Y + k].repeated(N_PLACES))
-    rows[SEEN_Y] = y
-    rows[SEEN_V] = v
-    rows[SEEN_HALF_A] = half_a
+    rows[PLACE_Y] = y
+    rows[PLACE_V] = v
+    rows[PLACE_HALF_A] = half_a
 
 
-look = unrolled(_look)
+evaluate_places = unrolled(_evaluate_places)
 
 
 @inner(inline="always")

@@ -1,18 +1,18 @@
 """The workspace of the sweep: what each lane knows of its run, and of its place in it.
 
 It is one flat float64 array of rows, one element of a row for each lane; the names below are row
-numbers. What is told apart by a number (the regime, a stretch of the mesh period, whether a period
-is kept) is a whole number in its row, so that all lanes can be looked at in one go.
+numbers. The regime, the segment of the mesh period and whether a period is kept are whole numbers
+in their rows, so that one instruction compares them in all lanes.
 """
 
 ORDER = 18
 """Degree of the Taylor polynomials."""
 
 N_PLACES = 4
-"""Places of a step where its course is looked at for events, evenly up to its end."""
+"""Places of a step where its motion is evaluated to find events, evenly up to its end."""
 
 MAX_SEGMENTS = 6
-"""Most stretches of constant stiffness and friction sign in a mesh period."""
+"""Most segments of a mesh period."""
 
 Y, B = 0, ORDER + 1
 """First rows of the series of y and b; the state is Y, Y + 1, B, B + 1."""
@@ -42,12 +42,12 @@ _STATE = 2 * (ORDER + 1)
     LEVEL_BELOW,  # level that a falling y crosses
     GUARD,  # 1 or -1: watch y, which must stay above or below OFFSET; 0: watch v
     # The place in the run.
-    REGIME,  # of `gearmesh.model.motion`
-    SEGMENT,  # stretch of the mesh period
+    REGIME,  # of `gearmesh.model.contact`
+    SEGMENT,  # of the mesh period
     PERIOD,  # mesh periods done
     KEPT,  # 1 in the kept revolutions, else 0
-    SINCE_STOP,  # time since the stretch began
-    LENGTH,  # of that stretch
+    SINCE_SEGMENT,  # time since the segment began
+    LENGTH,  # of that segment
     REMAINING,  # time to its end, a switch, pitch point or boundary
     SINCE_BOUNDARY,  # time since the mesh period began
     STEPS,  # steps taken
@@ -58,11 +58,12 @@ _STATE = 2 * (ORDER + 1)
     CONTACT_LOSSES,  # how often contact was lost in the kept time
     # The run.
     BACKLASH,  # s
-    SEGMENTS,  # stretches in a mesh period
+    FARTHEST,  # |y| at which the run has diverged
+    SEGMENTS,  # in a mesh period
     PERIODS,  # mesh periods in all
     FIRST_KEPT,  # the first that is kept
     MOST_STEPS,  # steps after which the run is given up
-) = range(_STATE, _STATE + 37)
+) = range(_STATE, _STATE + 38)
 
 MATERIAL = MOST_STEPS + 1
 """First of three rows with k_1, k_2 and k_3 where flanks touch."""
@@ -73,9 +74,9 @@ LUBRICANT = MATERIAL + 3
 SEGMENT_LENGTH, SEGMENT_STIFFNESS, SEGMENT_FRICTION = (
     LUBRICANT + 3 + MAX_SEGMENTS * i for i in range(3)
 )
-"""First rows of what belongs to the stretches: their lengths, c and g."""
+"""First rows of what belongs to the segments: their lengths, c and g."""
 
-SEEN_Y, SEEN_V, SEEN_HALF_A = (SEGMENT_FRICTION + MAX_SEGMENTS + N_PLACES * i for i in range(3))
-"""First rows of what is seen at the places of a step: y, v and half the acceleration."""
+PLACE_Y, PLACE_V, PLACE_HALF_A = (SEGMENT_FRICTION + MAX_SEGMENTS + N_PLACES * i for i in range(3))
+"""First rows of y, v and half the acceleration at the places of a step."""
 
-N_ROWS = SEEN_HALF_A + N_PLACES
+N_ROWS = PLACE_HALF_A + N_PLACES

@@ -1,14 +1,15 @@
-"""What follows a stop: the next regime behind a level, the next stretch of the mesh period.
+"""What follows an event: the next regime behind a level, the next segment of the mesh period.
 
-All lanes are looked at in one go; masks tell those that stopped. What a lane finds in its rows
-afterwards depends on its regime, its stretch and its run alone.
+One instruction treats all lanes; masks select those in which the event has happened. What a lane
+finds in its rows afterwards depends on its regime, its segment and its run alone.
 """
 
 import numpy as np
 
-from gearmesh.model.motion import CONTACT_LOSS, INVERSE_MESH, NORMAL_MESH
+from gearmesh.model.contact import CONTACT_LOSS, INVERSE_MESH, NORMAL_MESH
 from gearmesh.solvers.compilation import inner
-from gearmesh.solvers.lanes import load, select, spread, store
+from gearmesh.solvers.lanes.operations import select, spread
+from gearmesh.solvers.lanes.rows import load, store
 from gearmesh.solvers.reduced.workspace import (
     BACKLASH,
     CONTACT_LOSSES,
@@ -36,7 +37,7 @@ from gearmesh.solvers.reduced.workspace import (
     SEGMENTS,
     SIGN,
     SINCE_BOUNDARY,
-    SINCE_STOP,
+    SINCE_SEGMENT,
     Y,
 )
 
@@ -59,27 +60,27 @@ def cross_level(like, work, crossed):
 
 
 @inner(inline="never")
-def next_segment(like, work, stopped):
-    """Take the lanes in `stopped` to their next stretch; return those that begin a period."""
+def next_segment(like, work, ended):
+    """Take the lanes in `ended` to their next segment; return those that begin a period."""
     zero = spread(like, 0.0)
     segment = load(like, work, SEGMENT) + 1.0
-    around = stopped & (segment == load(like, work, SEGMENTS))
+    around = ended & (segment == load(like, work, SEGMENTS))
     segment = select(around, zero, segment)
-    store(work, SEGMENT, select(stopped, segment, load(like, work, SEGMENT)))
+    store(work, SEGMENT, select(ended, segment, load(like, work, SEGMENT)))
     period = load(like, work, PERIOD)
     store(work, PERIOD, select(around, period + 1.0, period))
     since = load(like, work, SINCE_BOUNDARY)
     store(work, SINCE_BOUNDARY, select(around, zero, since))
-    store(work, SINCE_STOP, select(stopped, zero, load(like, work, SINCE_STOP)))
-    length = select(stopped, _of_segment(like, work, SEGMENT_LENGTH), load(like, work, LENGTH))
+    store(work, SINCE_SEGMENT, select(ended, zero, load(like, work, SINCE_SEGMENT)))
+    length = select(ended, _of_segment(like, work, SEGMENT_LENGTH), load(like, work, LENGTH))
     store(work, LENGTH, length)
-    store(work, REMAINING, select(stopped, length, load(like, work, REMAINING)))
+    store(work, REMAINING, select(ended, length, load(like, work, REMAINING)))
     return around
 
 
 @inner(inline="always")
 def _of_segment(like, work, rows):
-    """Return what belongs to the stretch of each lane, out of MAX_SEGMENTS rows."""
+    """Return what belongs to the segment of each lane, out of MAX_SEGMENTS rows."""
     segment = load(like, work, SEGMENT)
     value = load(like, work, rows)
     for i in range(1, MAX_SEGMENTS):
@@ -89,7 +90,7 @@ def _of_segment(like, work, rows):
 
 @inner(inline="never")
 def enter(like, work):
-    """Write the coefficients and levels that belong to each lane's regime and stretch."""
+    """Write the coefficients and levels that belong to each lane's regime and segment."""
     zero = spread(like, 0.0)
     far = spread(like, np.inf)
     regime = load(like, work, REGIME)

@@ -1,0 +1,196 @@
+"""The statement of one run, and the state that it starts from or ends in."""
+
+import math
+from dataclasses import dataclass, replace
+
+
+@dataclass(frozen=True, slots=True)
+class Problem:
+    """One run, in dimensionless form.
+
+    Lengths are in static deflections y_st = F_st / C_s, forces in the static mesh force F_st,
+    times in 1 / Omega_s with Omega_s = sqrt(C_s / m_red), so the mean mesh stiffness and the
+    reduced mass are 1.
+
+    Attributes
+    ----------
+    nu : float
+        Mesh frequency, nu_s = omega_c / Omega_s.
+    contact_ratio : float
+        epsilon.
+    stiffness_max, stiffness_min : float
+        C_max / C_s and C_min / C_s.
+    material, lubricant : tuple of three float
+        Coefficients of v, abs(v) v and v^3 in normal and inverse mesh, and in contact loss.
+    backlash : float
+        s / y_st.
+    body_mass : float
+        m / m_red, the mass of each wheel body in y and z.
+    bearing_stiffness : float
+        c_b / C_s, of each body in y and z.
+    bearing_damping_ratio : float
+        b_b / (2 sqrt(c_b m)).
+    friction_coefficient : float
+        f_T.
+    pressure_angle : float
+        alpha, in rad.
+    teeth : int
+        Z, of each wheel.
+    base_radius : float
+        R_b / y_st, of each wheel.
+    eccentricity_3, eccentricity_2 : float
+        e_3 / y_st and e_2 / y_st.
+    eccentricity_angle : float
+        Delta, in rad.
+    deviation : tuple of (float, float)
+        Profile deviation f: amplitudes (cosine, sine) of harmonics 1, 2, ... of the mesh
+        frequency, in y_st.
+    stiffness_harmonics : int
+        Terms of eq. (4) that are kept; 0 for all of them, the rectangular wave.
+    initial_phase : float
+        Mesh phase at the start of the run, in mesh periods.
+    revolutions, kept_revolutions : int
+        Revolutions of the wheels that are run, and how many of the last are measured; 0 measures
+        nothing, as in a run that only carries a transient off.
+    initial_state : State, optional
+        Where the run starts, in place of rest in static equilibrium.
+    """
+
+    nu: float
+    contact_ratio: float
+    stiffness_max: float
+    stiffness_min: float
+    material: tuple[float, float, float]
+    lubricant: tuple[float, float, float]
+    backlash: float
+    body_mass: float
+    bearing_stiffness: float
+    bearing_damping_ratio: float
+    friction_coefficient: float
+    pressure_angle: float
+    teeth: int
+    base_radius: float
+    eccentricity_3: float = 0.0
+    eccentricity_2: float = 0.0
+    eccentricity_angle: float = 0.0
+    deviation: tuple[tuple[float, float], ...] = ()
+    stiffness_harmonics: int = 0
+    initial_phase: float = 0.0
+    revolutions: int = 5
+    kept_revolutions: int = 1
+    initial_state: "State | None" = None
+
+    @property
+    def period(self) -> float:
+        """Mesh period T in tau_s."""
+        return 2.0 * math.pi / self.nu
+
+    @property
+    def rotation_speed(self) -> float:
+        """Mean speed of the wheels omega_i = omega_c / Z, in Omega_s."""
+        return self.nu / self.teeth
+
+    @property
+    def start_time(self) -> float:
+        """Time t of eqs. (3), (4) and (6) at the start of the run."""
+        return (self.start_period + self.initial_phase) * self.period
+
+    @property
+    def start_period(self) -> int:
+        """Mesh periods that the wheels have turned since t = 0 when the run starts."""
+        return 0 if self.initial_state is None else self.initial_state.periods
+
+    @property
+    def periods(self) -> int:
+        """Mesh periods of the run."""
+        return self.revolutions * self.teeth
+
+    @property
+    def kept_periods(self) -> int:
+        """Mesh periods that are measured, the last of the run."""
+        return self.kept_revolutions * self.teeth
+
+    @property
+    def has_run_out(self) -> bool:
+        """Whether a wheel runs out of true."""
+        return self.eccentricity_3 != 0.0 or self.eccentricity_2 != 0.0
+
+
+@dataclass(frozen=True, slots=True)
+class State:
+    """Where a run stands at a boundary of its mesh periods.
+
+    The end of a run (`gearmesh.solvers.response.Response.final_state`) holds all that the next run
+    needs to go on from there bit for bit. `gearmesh.model.motion.state_at` makes a state from y and
+    its rate.
+
+    Attributes
+    ----------
+    y, v : float
+        Relative motion and its rate, in y_st and y_st Omega_s.
+    b, b_rate : float
+        Distance of the bodies along the mesh line, y_3 - y_2, and its rate.
+    coordinates : tuple of 12 float, optional
+        The six coordinates and their rates. The reduced system does not know them; a run in the
+        six coordinates then shares y and b evenly between the wheels, with nothing displaced
+        across the mesh line.
+    periods : int
+        Mesh periods since t = 0: they tell the angle of the shafts, and so of the run-out.
+    branches : Branches, optional
+        The branches of the laws that jump. Without them they are found from the numbers above.
+    """
+
+    y: float
+    v: float
+    b: float
+    b_rate: float
+    coordinates: tuple[float, ...] | None = None
+    periods: int = 0
+    branches: "Branches | None" = None
+
+    def branches_for(self, problem: Problem) -> "Branches | None":
+        """Return the branches if `problem` has the laws that they were found for."""
+        if self.branches is None:
+            return None
+        same = _laws(self.branches.problem) == _laws(problem)
+        return self.branches if same else None
+
+
+@dataclass(frozen=True, slots=True)
+class Branches:
+    """The branches of the laws that jump, as a run has left them.
+
+    Rounding may leave a quantity on the wrong side of the place where a law jumps. Going on bit for
+    bit takes these discrete facts, not numbers close to 0.
+
+    Attributes
+    ----------
+    problem : Problem
+        The run that has left them, without its initial state. They hold for its laws only.
+    regime : int
+        Of `gearmesh.model.contact`.
+    direction : float
+        Sign of y', 0 before the first motion.
+    measured : bool
+        Whether extrema were recorded up to here, so that one that falls on this boundary counts.
+    signs : tuple of two float
+        The two signs of eq. (6); the second is 0 while the flanks stick.
+    level : float
+        Level of y that was passed last.
+    exact : tuple of four bool
+        Whether y', y - `level` and the bracket of eq. (6) are exactly 0, and whether sticking has
+        just ended.
+    """
+
+    problem: Problem
+    regime: int
+    direction: float
+    measured: bool
+    signs: tuple[float, float] = (1.0, 1.0)
+    level: float = 0.0
+    exact: tuple[bool, bool, bool, bool] = (False, False, False, False)
+
+
+def _laws(problem: Problem) -> Problem:
+    """Return the laws that `problem` states, whatever its length and its start."""
+    return replace(problem, revolutions=1, kept_revolutions=0, initial_state=None)

@@ -1,0 +1,80 @@
+"""What is measured on a run in the six coordinates: extrema, shares and samples."""
+
+import numpy as np
+
+from gearmesh.model.contact import CONTACT_LOSS, INVERSE_MESH
+from gearmesh.solvers.compilation import inner
+from gearmesh.solvers.full.roots import evaluate, evaluate_with_slope
+from gearmesh.solvers.full.series import FRICTION, STIFFNESS, V, Y
+from gearmesh.solvers.response import MAXIMUM, MEASURED, MINIMUM
+
+SUMMARY = np.dtype([*MEASURED, ("samples", np.int64)])
+"""What is measured on a run, and how many samples were taken."""
+
+SAMPLE = np.dtype(
+    [(name, np.float64) for name in ("time", "y", "v", "a", "stiffness", "friction", "regime")]
+)
+
+_NODES, _WEIGHTS = np.polynomial.legendre.leggauss(16)
+_NODES = 0.5 * (_NODES + 1.0)
+_WEIGHTS = 0.5 * _WEIGHTS
+
+
+@inner
+def take_value(summary, y):
+    """Let y_max and y_min include `y`."""
+    summary.y_max = max(summary.y_max, y)
+    summary.y_min = min(summary.y_min, y)
+
+
+@inner
+def record_extremum(case, mode, y, extrema, summary):
+    """Record a turn of y at `y`; extrema beyond the room for them are counted, not kept."""
+    if mode.period < case.first_kept:
+        return
+    n = summary.extrema
+    summary.extrema = n + 1
+    take_value(summary, y)
+    if n >= extrema.size:
+        return
+    extremum = extrema[n]
+    extremum.time = mode.period * case.period + mode.time
+    extremum.y = y
+    extremum.kind = MAXIMUM if mode.direction > 0.0 else MINIMUM
+
+
+@inner
+def sample(case, segment, mode, fourier, series, until, samples, per_period, summary):
+    """Write the samples before `until`."""
+    first = (mode.period - case.first_kept) * per_period
+    while summary.samples - first < per_period:
+        time = (summary.samples - first) * (case.period / per_period)
+        if time >= until:
+            return
+        since = time - mode.time
+        sample = samples[summary.samples]
+        sample.time = mode.period * case.period + time
+        sample.y = evaluate(series[Y], case.order, since)
+        sample.v, sample.a = evaluate_with_slope(series[V], case.order - 1, since)
+        sample.stiffness = segment.stiffness
+        if fourier:
+            sample.stiffness = evaluate(series[STIFFNESS], case.order, since)
+        sample.friction = 0.0
+        if case.friction != 0.0:
+            sample.friction = evaluate(series[FRICTION], case.order - 2, since)
+        sample.regime = mode.regime
+        summary.samples += 1
+
+
+@inner
+def measure(case, mode, series, duration, summary):
+    """Add the step to the sums over the kept revolutions."""
+    total = 0.0
+    for i in range(_NODES.size):
+        y = evaluate(series[Y], case.order, duration * _NODES[i])
+        total += _WEIGHTS[i] * y * y
+    summary.square_integral += total * duration
+    if mode.regime == CONTACT_LOSS:
+        summary.loss_time += duration
+    elif mode.regime == INVERSE_MESH:
+        summary.inverse_time += duration

@@ -1,0 +1,65 @@
+"""Rows of a workspace, with one element for each lane."""
+
+from llvmlite import ir
+from numba import types
+from numba.extending import intrinsic
+
+from gearmesh.solvers.lanes.types import DOUBLE, vector_type
+
+POINTER = types.CPointer(types.float64)
+
+
+@intrinsic
+def pointer_to(typingctx, array):
+    """Return where a float64 array begins.
+
+    Functions that pass a workspace on by its pointer count no references, which takes as long as
+    dozens of operations; the caller has to keep the array.
+    """
+
+    def codegen(context, builder, sig, args):
+        return context.make_array(sig.args[0])(context, builder, args[0]).data
+
+    return POINTER(array), codegen
+
+
+def _row_pointer(builder, data, row, width):
+    offset = builder.mul(row, ir.Constant(row.type, width))
+    return builder.bitcast(builder.gep(data, [offset]), vector_type(DOUBLE, width).as_pointer())
+
+
+@intrinsic
+def load(typingctx, like, work, row):
+    """Return row `row` of a workspace whose rows have one element for each lane."""
+
+    def codegen(context, builder, sig, args):
+        row = context.cast(builder, args[2], sig.args[2], types.intp)
+        return builder.load(_row_pointer(builder, args[1], row, like.width), align=8)
+
+    return like(like, POINTER, row), codegen
+
+
+@intrinsic
+def store(typingctx, work, row, value):
+    """Write `value` to row `row` of a workspace."""
+
+    def codegen(context, builder, sig, args):
+        row = context.cast(builder, args[1], sig.args[1], types.intp)
+        builder.store(args[2], _row_pointer(builder, args[0], row, value.width), align=8)
+        return context.get_dummy_value()
+
+    return types.void(POINTER, row, value), codegen
+
+
+@intrinsic
+def store_at(typingctx, array, index, value):
+    """Write the lanes of `value` to consecutive elements of a flat array, from `index` on."""
+
+    def codegen(context, builder, sig, args):
+        data = context.make_array(sig.args[0])(context, builder, args[0]).data
+        index = context.cast(builder, args[1], sig.args[1], types.intp)
+        kind = vector_type(DOUBLE, value.width).as_pointer()
+        builder.store(args[2], builder.bitcast(builder.gep(data, [index]), kind), align=8)
+        return context.get_dummy_value()
+
+    return types.void(array, index, value), codegen
