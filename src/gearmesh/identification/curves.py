@@ -34,7 +34,7 @@ _JUMPS_UP_TO = 0.92
 def scan_of(name: str) -> np.ndarray:
     """Return the mesh frequencies of the scan of a variant, ascending.
 
-    With damping in the lubricant alone there are jumps and long transients, which need a close scan.
+    With damping in the lubricant alone, jumps and long transients need a close scan.
     With linear damping in the material there are jumps too, but far apart. All other curves are
     smooth. The loops of c-material are followed down to `LOOPS_FROM`.
     """

@@ -1,4 +1,4 @@
-"""All results of the identification, as one plain mapping: the content of `config/identified.yaml`."""
+"""All results of the identification as one mapping: the content of `config/identified.yaml`."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -213,7 +213,7 @@ def _share_of(meets: np.ndarray, prior: np.ndarray) -> dict[str, object]:
 
 
 def regions(analysis: Analysis, family: Family) -> dict[str, object]:
-    """Return the compatible region of each factor, from the largest set of claims that hold together."""
+    """Return the region of each factor that the largest set of compatible claims allows."""
     evidence = analysis.evidence(family)
     fit = analysis.fit(family, evidence)
     table: dict[str, object] = {}
