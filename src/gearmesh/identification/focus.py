@@ -15,7 +15,7 @@ BEST = 64
 
 
 def best(held: np.ndarray, fit: np.ndarray, count: int = BEST) -> np.ndarray:
-    """Return the indices of the samples that meet most claims; of equal ones, those that fit best."""
+    """Return the indices of the samples that meet most claims; ties go to the best fit."""
     return np.lexsort((-fit, -held))[:count]
 
 

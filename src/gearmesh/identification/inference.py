@@ -32,7 +32,7 @@ _GRID = 401
 
 
 def effective_size(weights: np.ndarray) -> float:
-    """Return the effective number of samples (Kish): that of equal weights with the same variance."""
+    """Return the effective number of weighted samples (Kish)."""
     total = weights.sum()
     return float(total**2 / np.sum(weights**2)) if total > 0 else 0.0
 

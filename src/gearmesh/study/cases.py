@@ -57,7 +57,7 @@ class Plan(Section):
     variants: tuple[VariantName, ...] = Field(description="names of Tab. 1, or all")
     direction: Literal["up", "down"] | None = Field(
         None,
-        description="whether each run starts from the end of the run at the neighbouring frequency",
+        description="whether each run starts from the end of the run at the next frequency",
     )
     strong_damping: StrongDamping | None = Field(None, description="a more damped variant")
     time_courses: dict[str, tuple[Nu, ...]] = Field(
