@@ -37,7 +37,11 @@ def draw_response(resonance: xr.Dataset) -> Figure:
             for extreme in ("y_max_rel", "y_min_rel"):
                 axes.plot(
                     *(curve["nu"], curve[extreme]),
-                    **{"ls": "none", "marker": ".", "ms": 2.4, "mew": 0, "rasterized": True},
+                    ls="none",
+                    marker=".",
+                    ms=2.4,
+                    mew=0,
+                    rasterized=True,
                     color=look.colour,
                     alpha=0.5 if curve["damping_factor"] != 1.0 else 1.0,
                     label=str(name) if extreme == "y_max_rel" else None,
@@ -70,7 +74,11 @@ def draw_bifurcation(bifurcation: xr.Dataset) -> Figure:
         nu = np.broadcast_to(curve["nu"].values[:, None], extrema.shape)
         axes.plot(
             *(nu.ravel(), extrema.ravel()),
-            **{"ls": "none", "marker": ".", "ms": 1.4, "mew": 0, "rasterized": True},
+            ls="none",
+            marker=".",
+            ms=1.4,
+            mew=0,
+            rasterized=True,
             color=palette.LOOKS[str(curve["symbol"].item())].colour,
         )
         axes.set_title(name)
