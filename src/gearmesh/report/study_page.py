@@ -9,12 +9,12 @@ from pathlib import Path
 
 import xarray as xr
 
-from gearmesh.data.casefile import STATUSES
 from gearmesh.data.datasets import open_dataset
 from gearmesh.data.paths import Places
 from gearmesh.data.writing import write_text
 from gearmesh.report import description
 from gearmesh.report.presentation import environment
+from gearmesh.solvers.response import STATUSES
 from gearmesh.study.cases import Study
 
 

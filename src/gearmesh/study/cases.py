@@ -47,7 +47,7 @@ class StrongDamping(Section):
 
 
 class Plan(Section):
-    """Which cases are computed, and what is made of them."""
+    """The cases of a study, and the files that are written."""
 
     title: str = Field(description="one line", min_length=1, max_length=200)
     claims: str | None = Field(
@@ -56,7 +56,8 @@ class Plan(Section):
     nu: Frequencies = Field(description="the mesh frequencies ν_s of all variants")
     variants: tuple[VariantName, ...] = Field(description="names of Tab. 1, or all")
     direction: Literal["up", "down"] | None = Field(
-        None, description="whether each run goes on from the run at the neighbouring frequency"
+        None,
+        description="whether each run starts from the end of the run at the next frequency",
     )
     strong_damping: StrongDamping | None = Field(None, description="a more damped variant")
     time_courses: dict[str, tuple[Nu, ...]] = Field(
@@ -184,8 +185,7 @@ class Study:
     def cases(self) -> tuple[Case, ...]:
         """All cases, variant by variant, each with ascending frequencies.
 
-        A frequency that has a time course is a case of its variant also where it lies off the
-        grid.
+        A frequency with a time course is a case of its variant even if it is not on the grid.
         """
         cases = []
         for chosen, nus in self.plan.frequencies():
