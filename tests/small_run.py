@@ -9,23 +9,23 @@ from gearmesh.study.cases import Study
 
 def compute(study: Study, root: Path) -> None:
     """Write the datasets of `study` and its cases with time courses below `root`."""
-    parameters = study.pair
+    pair = study.pair
     (batch,) = batches.partition(study.cases, len(study.cases))
     records = {}
-    for with_course, samples in ((False, 0), (True, parameters.samples_per_period)):
+    for with_course, samples in ((False, 0), (True, pair.samples_per_period)):
         cases = [case for case in batch.cases if case.time_course == with_course]
-        problems = [parameters.problem(case.variant, case.nu) for case in cases]
-        responses = simulate(problems, parameters.tolerance, samples)
+        problems = [pair.problem(case.variant, case.nu) for case in cases]
+        responses = simulate(problems, pair.tolerance, samples)
         for case, response in zip(cases, responses, strict=True):
-            records[case] = casefile.record(response, parameters)
+            records[case] = casefile.record(response, pair)
     for case in (case for case in batch.cases if case.time_course):
         casefile.write_case(
             root / paths.case_file(case.variant.name, case.nu),
-            casefile.attributes(parameters, case),
+            casefile.attributes(pair, case),
             records[case],
         )
     stored = root / paths.batch_file(batch.name)
     ordered = [records[case] for case in batch.cases]
-    batches.write_batch(stored, batches.attributes(parameters, batch), batch, ordered)
+    batches.write_batch(stored, batches.attributes(pair, batch), batch, ordered)
     datasets.write_datasets(study, [stored], root / paths.RESONANCE, root / paths.BIFURCATION)
     (root / paths.THRESHOLDS).write_text("{}\n")

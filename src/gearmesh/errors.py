@@ -2,4 +2,10 @@
 
 
 class InputError(ValueError):
-    """Bad input, told in one line: which key or file, what was found, what is allowed."""
+    """Bad input, in one line: which key or file, what was found, what is allowed.
+
+    A text of the input that the message quotes may hold line breaks; they become spaces.
+    """
+
+    def __init__(self, message: str) -> None:
+        super().__init__(" ".join(message.split()))

@@ -1,5 +1,6 @@
 """The report: complete, safe, the same each time, and it opens without a network."""
 
+import dataclasses
 import re
 import xml.etree.ElementTree as ElementTree
 from html.parser import HTMLParser
@@ -19,7 +20,6 @@ from gearmesh.report.presentation import claims_table, expected, found, number, 
 from gearmesh.reproduction.claims import Entry, Evidence, load_ledger, write_entries
 from gearmesh.reproduction.claims.checking import check_figure
 from gearmesh.reproduction.equations import EQUATIONS
-from gearmesh.study.pair import Assumed
 
 
 class Page(HTMLParser):
@@ -68,7 +68,7 @@ def claim(**changes) -> Entry:
 def entries(root, study):
     """Return the whole ledger, with what the printed numbers give; the rest is not testable."""
     ledger = load_ledger(root / paths.CLAIMS)
-    evidence = Evidence(parameters=study.pair)
+    evidence = Evidence(pair=study.pair)
     figures = ("printed", *paths.NOTEBOOK_NAMES)
     return [entry for figure in figures for entry in check_figure(figure, evidence, ledger)]
 
@@ -175,10 +175,33 @@ def test_every_figure_has_its_caption_and_its_notebook(page, root):
         assert f"notebooks/{name}.html" in page.links
 
 
-def test_every_assumption_stands_with_its_reason(page, small_study):
-    for name, info in Assumed.model_fields.items():
-        assert Page(str(typeset(small_study.reasons[name]))).words in page.words
-        assert Page(str(typeset(info.description))).words in page.words
+def test_every_parameter_stands_with_its_description_and_reason(page, small_study):
+    for parameter in small_study.pair.parameters:
+        if parameter.value is None:  # left open
+            continue
+        for text in (parameter.description, parameter.reason):
+            assert Page(str(typeset(text))).words in page.words
+
+
+def test_what_a_study_states_itself_is_not_called_printed_or_assumed(small_run, small_study):
+    resonance = report.open_dataset(small_run / paths.RESONANCE)
+    assert "Stated by this study" not in render(small_study, [], resonance)
+    own = dataclasses.replace(small_study, pair=small_study.pair.replace(teeth=24, module="2 mm"))
+    text = render(own, [], resonance)
+    start = text.index("Stated by this study")
+    listed = text[start : text.index("<h3>", start)]
+    assert re.findall(r"<td><code>(\w+)</code>", listed) == ["teeth", "module"]
+    assert "Stated by this study" not in text[:start]
+    assert text.count("<td><code>teeth</code>") == text.count("<td><code>module</code>") == 1
+
+
+def test_a_claim_whose_threshold_is_not_located_names_the_failed_run(small_run, small_study):
+    detail = "not located: first_jump of c-lubricant: the run of c-lubricant at nu_s = 0.65"
+    entry = claim(status="not_testable", measured=None, detail=detail)
+    text = render(small_study, [entry], report.open_dataset(small_run / paths.RESONANCE))
+    summary = Page(text[: text.index('id="claims"')]).words
+    assert Page(str(typeset(detail))).words in summary
+    assert "did not expect" in text
 
 
 def test_the_numbers_of_the_study_are_on_the_page(page, small_study):

@@ -254,10 +254,10 @@ def test_last_periods_end_with_the_run(courses):
 
 def test_scales_come_from_the_parameters_of_the_file(courses, small_study):
     found = orbit.scale(courses["c-material", 0.61])
-    assumed = small_study.assumed
-    assert found.static_deflection == assumed.static_deflection
-    assert found.backlash == assumed.backlash / assumed.static_deflection
-    assert (found.kept_periods, found.damping) == (21, small_study.damping)
+    pair = small_study.pair
+    assert found.static_deflection == pair.static_deflection
+    assert found.backlash == pair.backlash / pair.static_deflection
+    assert (found.kept_periods, found.damping) == (21, pair.damping)
 
 
 @pytest.mark.parametrize("module", [fig2, fig3])

@@ -2,8 +2,6 @@
 
 from collections.abc import Sequence
 
-import numpy as np
-
 from gearmesh.model.contact import Number
 
 
@@ -12,15 +10,15 @@ def damping_force(velocity: Number, law: Sequence[float]) -> Number:
 
     Parameters
     ----------
-    velocity : float or ndarray
+    velocity : float, ndarray or series
         v = dy/dtau_s, in y_st.
     law : sequence of three float
         k1, k2, k3: force in F_st of v, abs(v) v and v^3 at v = 1.
 
     Returns
     -------
-    float or ndarray, shape of `velocity`
+    float, ndarray or series, as `velocity`
         Force in F_st, with the sign of `velocity`.
     """
     linear, quadratic, cubic = law
-    return (linear + quadratic * np.abs(velocity) + cubic * velocity**2) * velocity
+    return (linear + quadratic * abs(velocity) + cubic * velocity * velocity) * velocity

@@ -29,9 +29,35 @@ F_T = -f_T E gamma with gamma > 0 before the pitch point (sigma < 0): F_T oppose
 dissipates, as long as the elastic force E is positive. In inverse mesh E is negative while gamma is
 not, so eq. (6) as printed drives the sliding there; it is kept as printed.
 
-With run-out both signs of eq. (6) act, and the wheels, at rest across the mesh line, only start to
-move along z where friction drives (`gearmesh.solvers.full.kernel` tells of sticking). Run-outs
-that cancel each other in eq. (3) (e_3 = e_2, Delta = pi) leave the first sign without meaning.
+Without run-out both signs are +1 (`follows_run_out`).
+
+Rules with run-out
+------------------
+With run-out both signs of eq. (6) act: F_T = -A sign(z_3' - z_2') with A = f_T E gamma times the
+first sign, that of the bracket. The paper does not say what holds where an argument is 0. These
+rules do, and they decide results: with other ones y_max of a run may change in its second digit.
+
+1. Opposed sliding sticks. Where A > 0 friction opposes the sliding. At z_3' = z_2' the flanks then
+   stick (Filippov) while the force that holds them (`holding_force`) is within <-A; A>, and F_T
+   takes that value. They slide again as soon as it takes more.
+2. Driven sliding does not stick. Where A < 0 eq. (6) drives the sliding, and nothing can hold it.
+   From z_3' = z_2' the flanks go where the bearings pull them.
+3. Double contact neither holds nor drives, nor does contact loss. There A = 0; in double contact
+   because the forces of both pairs cancel. From z_3' = z_2' the flanks go where the bearings pull
+   them, and the second sign follows.
+4. From exact rest, where the bearings do not pull, the second sign is +1. This is how a run starts
+   in double contact, where the sign acts on the moments alone.
+5. At the start of a run the first sign is that of the bracket, +1 if it is 0.
+6. The first sign cannot stick. Where friction turns the bracket back to 0 from both sides, no sign
+   lasts, and eq. (6) has no solution. This takes run-outs that nearly cancel each other in eq. (3)
+   (e_3 = e_2 and Delta = pi, where the bracket vanishes at all times), or friction far beyond that
+   of gears. Such a run ends with the status ``friction_undefined``.
+
+Nothing balances the moments of friction on the mean rotation (phi_3 - phi_2)/2: in the paper's
+model the static moments are constant, and there is no damping to the frame. So the mean rotation
+drifts, and with it the place of the run-out. The drift is part of the model, and is reported
+(`gearmesh.solvers.response.Response.rotation_drift`); after some radians a run no longer has the
+speed that it states.
 
 Two pairs
 ---------

@@ -27,8 +27,8 @@ from gearmesh.model.friction import (
 )
 from gearmesh.model.problem import Problem, State
 
-Six = Sequence[float] | np.ndarray
-"""Six coordinates or their rates; truncated Taylor series may stand in place of floats."""
+Vector = Sequence[float] | np.ndarray
+"""Six coordinates, or their rates."""
 
 ROTATION_3, ROTATION_2, Y_3, Y_2, Z_3, Z_2 = range(6)
 """Places of R_b phi_3, R_b phi_2, y_3, y_2, z_3, z_2 among the coordinates."""
@@ -59,12 +59,21 @@ class Mode:
     slip_sign: int = 1
 
 
+def _sine(angle: float) -> float:
+    """Return the sine of a float, or of a series by its own method."""
+    return angle.sin() if hasattr(angle, "sin") else math.sin(angle)
+
+
+def _cosine(angle: float) -> float:
+    return angle.cos() if hasattr(angle, "cos") else math.cos(angle)
+
+
 def mesh_phase(problem: Problem, time: float) -> float:
     """Return the mesh phase at `time`, in mesh periods from t = 0 of eq. (4)."""
     return time / problem.period
 
 
-def angles(problem: Problem, time: float, q: Six) -> tuple[float, float]:
+def angles(problem: Problem, time: float, q: Vector) -> tuple[float, float]:
     """Return Phi_3 and Delta - Phi_2, where Phi_i = omega_i t + phi_i is a total rotation."""
     turned = problem.rotation_speed * time
     phi_3 = q[ROTATION_3] / problem.base_radius
@@ -72,12 +81,12 @@ def angles(problem: Problem, time: float, q: Six) -> tuple[float, float]:
     return turned + phi_3, problem.eccentricity_angle - (turned + phi_2)
 
 
-def levers(problem: Problem, time: float, q: Six) -> tuple[float, float]:
+def levers(problem: Problem, time: float, q: Vector) -> tuple[float, float]:
     """Return dy/dphi_3 and dy/dphi_2 in R_b: run-out changes the lever of the normal force."""
     angle_3, angle_2 = angles(problem, time, q)
     return (
-        1.0 + problem.eccentricity_3 / problem.base_radius * math.cos(angle_3),
-        1.0 + problem.eccentricity_2 / problem.base_radius * math.cos(angle_2),
+        1.0 + problem.eccentricity_3 / problem.base_radius * _cosine(angle_3),
+        1.0 + problem.eccentricity_2 / problem.base_radius * _cosine(angle_2),
     )
 
 
@@ -86,12 +95,12 @@ def deviation(problem: Problem, time: float) -> tuple[float, float]:
     value = rate = 0.0
     for n, (cosine, sine) in enumerate(problem.deviation, start=1):
         angle = n * problem.nu * time
-        value += cosine * math.cos(angle) + sine * math.sin(angle)
-        rate += n * problem.nu * (sine * math.cos(angle) - cosine * math.sin(angle))
+        value += cosine * _cosine(angle) + sine * _sine(angle)
+        rate += n * problem.nu * (sine * _cosine(angle) - cosine * _sine(angle))
     return value, rate
 
 
-def relative_motion(problem: Problem, time: float, q: Six, v: Six) -> tuple[float, float]:
+def relative_motion(problem: Problem, time: float, q: Vector, v: Vector) -> tuple[float, float]:
     """Return the relative motion y of eq. (3) and its rate.
 
     Parameters
@@ -105,11 +114,11 @@ def relative_motion(problem: Problem, time: float, q: Six, v: Six) -> tuple[floa
     angle_3, angle_2 = angles(problem, time, q)
     f, f_rate = deviation(problem, time)
     y = q[ROTATION_3] + q[ROTATION_2] + q[Y_3] - q[Y_2] + f
-    y += problem.eccentricity_3 * math.sin(angle_3) - problem.eccentricity_2 * math.sin(angle_2)
+    y += problem.eccentricity_3 * _sine(angle_3) - problem.eccentricity_2 * _sine(angle_2)
     lever_3, lever_2 = levers(problem, time, q)
     rate = lever_3 * v[ROTATION_3] + lever_2 * v[ROTATION_2] + v[Y_3] - v[Y_2] + f_rate
-    rate += problem.eccentricity_3 * problem.rotation_speed * math.cos(angle_3)
-    rate += problem.eccentricity_2 * problem.rotation_speed * math.cos(angle_2)
+    rate += problem.eccentricity_3 * problem.rotation_speed * _cosine(angle_3)
+    rate += problem.eccentricity_2 * problem.rotation_speed * _cosine(angle_2)
     return y, rate
 
 
@@ -121,14 +130,14 @@ def mesh_stiffness(problem: Problem, phase: float, segment: float | None = None)
     return float(stiffness.rectangular(phase if segment is None else segment, *levels))
 
 
-def run_out_argument(problem: Problem, time: float, q: Six, v: Six) -> float:
+def run_out_argument(problem: Problem, time: float, q: Vector, v: Vector) -> float:
     """Return the bracket of eq. (6), e_3 Phi_3' sin Phi_3 - e_2 Phi_2' sin(Delta - Phi_2)."""
     angle_3, angle_2 = angles(problem, time, q)
     speed_3 = problem.rotation_speed + v[ROTATION_3] / problem.base_radius
     speed_2 = problem.rotation_speed + v[ROTATION_2] / problem.base_radius
-    return problem.eccentricity_3 * speed_3 * math.sin(
+    return problem.eccentricity_3 * speed_3 * _sine(
         angle_3
-    ) - problem.eccentricity_2 * speed_2 * math.sin(angle_2)
+    ) - problem.eccentricity_2 * speed_2 * _sine(angle_2)
 
 
 def bearing_damping(problem: Problem) -> float:
@@ -137,7 +146,7 @@ def bearing_damping(problem: Problem) -> float:
     return problem.bearing_damping_ratio * critical
 
 
-def mode_of(problem: Problem, time: float, q: Six, v: Six) -> Mode:
+def mode_of(problem: Problem, time: float, q: Vector, v: Vector) -> Mode:
     """Return the branches that act in a state; where a sign has argument 0 it is +1."""
     y, _ = relative_motion(problem, time, q, v)
     regime = int(regime_of(y, problem.backlash))
@@ -149,7 +158,7 @@ def mode_of(problem: Problem, time: float, q: Six, v: Six) -> Mode:
 
 
 def friction_actions(
-    problem: Problem, time: float, q: Six, v: Six, mode: Mode, elastic: float
+    problem: Problem, time: float, q: Vector, v: Vector, mode: Mode, elastic: float
 ) -> tuple[float, float, float]:
     """Return F_T on wheel 3 and the additional moments on both wheels over R_b, in F_st."""
     phase = mesh_phase(problem, time)
@@ -169,14 +178,14 @@ def friction_actions(
     return force, moment_3, moment_2
 
 
-def bearing_pull(problem: Problem, q: Six, v: Six) -> float:
+def bearing_pull(problem: Problem, q: Vector, v: Vector) -> float:
     """Return the force of the bearings against z_3 - z_2."""
     pull = problem.bearing_stiffness * (q[Z_3] - q[Z_2])
     return pull + bearing_damping(problem) * (v[Z_3] - v[Z_2])
 
 
 def accelerations(
-    problem: Problem, time: float, q: Six, v: Six, mode: Mode | None = None
+    problem: Problem, time: float, q: Vector, v: Vector, mode: Mode | None = None
 ) -> np.ndarray:
     """Return the second time derivatives of the six coordinates.
 

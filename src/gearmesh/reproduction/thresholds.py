@@ -222,10 +222,13 @@ def _of_loops(curve: ResponseCurve, pair: Pair) -> Found:
 
 def loop_place(curve: ResponseCurve, end: float, initial_phase: float) -> float:
     """Return the phase of the mesh period at which the last loop, just below its end, closes."""
-    response = curve.at([end - curve.width])[0]
-    closest = int(np.argmin(np.abs(np.diff(response.extremum_y))))
-    time = response.extremum_time[closest : closest + 2].mean()
-    return float((time / response.period + initial_phase) % 1.0)
+
+    def place(response: Response) -> float:
+        closest = int(np.argmin(np.abs(np.diff(response.extremum_y))))
+        time = response.extremum_time[closest : closest + 2].mean()
+        return float((time / response.period + initial_phase) % 1.0)
+
+    return float(curve.of(place)(np.array([end - curve.width]))[0])
 
 
 def _least(values: Iterable[float]) -> float:

@@ -18,7 +18,9 @@ _MOST_PER_PERIOD = 1e6
 def highest_frequency(problem: Problem) -> float:
     """Return a bound of the natural frequencies in contact: the trace of the coupled stiffness."""
     bearing = math.sqrt(problem.bearing_stiffness / problem.body_mass)
-    return math.sqrt(problem.stiffness_max * (1.0 + 2.0 / problem.body_mass) + bearing**2)
+    # With a contact ratio of 1 there never are two pairs.
+    stiffest = problem.stiffness_max if problem.contact_ratio > 1.0 else problem.stiffness_min
+    return math.sqrt(stiffest * (1.0 + 2.0 / problem.body_mass) + bearing**2)
 
 
 def longest_step(problem: Problem) -> float:

@@ -41,11 +41,6 @@ def load_study(path: str | Path, overrides: Iterable[str] = ()) -> Study:
     data, own = _with_bases(path, ())
     name = _name(path, data.pop("name", path.stem))
     _check_keys(path, data)
-    changed = {}
-    for text in overrides:
-        key, value = _override(text)
-        data[key] = value
-        changed[key] = f"--set {text}"
     try:
         statements = {
             key: read_statement(key, value)
@@ -54,8 +49,11 @@ def load_study(path: str | Path, overrides: Iterable[str] = ()) -> Study:
         }
     except InputError as error:
         raise InputError(f"{path}: {error}") from None
-    for key in changed:
-        statements[key] = Statement(data[key], reason="set on the command line")
+    changed = {}
+    for text in overrides:
+        key, value = _override(text)
+        statements[key] = Statement(value, reason="set on the command line")
+        changed[key] = f"--set {text}"
     pair = Pair.from_statements(statements, str(path), changed)
     plan = {key: value for key, value in data.items() if key not in Pair.model_fields}
     return Study(name, path, pair, _read_plan({"title": name, **plan}, own, path))
@@ -75,7 +73,7 @@ def _check_keys(path: Path, data: Mapping[str, object]) -> None:
     known = [*Pair.model_fields, *Plan.model_fields, "name", "base"]
     for key in data:
         if key not in known:
-            raise InputError(f"{path}: {key}: unknown key{_hint(key, known)}")
+            raise InputError(f"{path}: {key:.60}: unknown key{_hint(key, known)}")
 
 
 def _hint(key: str, known: Iterable[str]) -> str:
@@ -93,11 +91,9 @@ def _hint(key: str, known: Iterable[str]) -> str:
 def _read_plan(data: dict[str, object], own: Mapping[str, object], path: Path) -> Plan:
     """Read all that is no parameter.
 
-    A file that states other variants or frequencies means these only: time courses and stronger
-    damping that it inherits for cases that it does not have are left out.
+    A file that states other variants or frequencies means these only: time courses that it
+    inherits for cases that it does not have are left out.
     """
-    if "strong_damping" not in own and "variants" in own and _is_left_out(data):
-        data.pop("strong_damping", None)
     courses = data.pop("time_courses", None)
     plan = validate(Plan, data, str(path), {})
     if courses is None:
@@ -115,7 +111,7 @@ def _read_plan(data: dict[str, object], own: Mapping[str, object], path: Path) -
 
 
 def _is_left_out(data: Mapping[str, object]) -> bool:
-    """Return whether the variant of the stronger damping is none of the variants."""
+    """Return whether the variant of an inherited stronger damping is none of the variants."""
     strong, variants = data.get("strong_damping"), data.get("variants")
     if not isinstance(strong, Mapping) or not isinstance(variants, list):
         return False
@@ -147,7 +143,10 @@ def _with_bases(
     except InputError as error:
         raise InputError(f"{path}: base: {error}" if not inheriting else str(error)) from None
     inherited = {key: value for key, value in inherited.items() if key not in _OWN}
-    return _merge(inherited, own), own
+    merged = _merge(inherited, own)
+    if "variants" in own and "strong_damping" not in own and _is_left_out(merged):
+        del merged["strong_damping"]
+    return merged, own
 
 
 def _merge(base: Mapping[str, object], own: Mapping[str, object]) -> dict[str, object]:
@@ -177,5 +176,11 @@ def _override(text: str) -> tuple[str, object]:
     if not equals or not key:
         raise InputError(f"--set {text}: allowed is NAME=VALUE, as in backlash='40 um'")
     if key not in Pair.model_fields:
-        raise InputError(f"--set {text}: {key}: no such parameter{_hint(key, Pair.model_fields)}")
+        raise InputError(f"--set {text}: {key}: {_why_no_parameter(key)}")
     return key, yamlfile.read_value(value, f"--set {text}")
+
+
+def _why_no_parameter(key: str) -> str:
+    if key.partition(".")[0] in (*Plan.model_fields, "name", "base"):
+        return "not a parameter; the file of a study states it"
+    return f"no such parameter{_hint(key, Pair.model_fields)}"

@@ -19,7 +19,7 @@ from gearmesh.model.problem import Problem
 from gearmesh.model.variants import Variant
 from gearmesh.study import units
 from gearmesh.study.provenance import DEFAULT, SETTING, STATED, Statement
-from gearmesh.study.schema import Section, quantity, validate
+from gearmesh.study.schema import Section, quantity, read_quantity, shown, validate
 
 KG_PER_N_S2_MM = 1000.0
 """1 N s²/mm = 1000 kg: with it stiffnesses in N/mm and masses in kg go together."""
@@ -209,6 +209,12 @@ class Pair(Section):
         new = {name: Statement(value) for name, value in changes.items()}
         return Pair.from_statements({**self._all_statements(), **new})
 
+    def model_copy(self, *, update: Mapping[str, Any] | None = None, deep: bool = False) -> Self:
+        """Copy without validation; the copy knows its values, not how they were stated."""
+        copy = super().model_copy(update=update, deep=deep)
+        copy._statements = {}
+        return copy
+
     def _all_statements(self) -> dict[str, Statement]:
         """Return the statements; a pair that was built from bare values has none."""
         if self._statements:
@@ -388,37 +394,38 @@ def _with_unit(value: object, unit: str) -> object:
     return value if unit == "1" or value is None else f"{value!r} {unit}"
 
 
-_SCALES = {"y_st": "mm", "m_red": "kg", "C_s": "N/mm"}
-
-
 def _resolved(data: dict[str, Any]) -> dict[str, Any]:
-    """Replace values such as ``8 y_st`` by quantities, where their scale can be read."""
+    """Replace values such as ``8 y_st`` by quantities."""
     found = dict(data)
-    for scale, unit in _SCALES.items():
-        size = _scale(scale, found)
-        if size is not None:
-            for name, value in found.items():
-                found[name] = units.scaled(value, scale, size, unit)
+    for scale, unit in units.SCALES.items():
+        relative = [name for name, value in data.items() if units.is_multiple(value, scale)]
+        size = _scale(scale, data, relative[0]) if relative else 0.0
+        for name in relative:
+            found[name] = units.scaled(found[name], scale, size, unit)
     return found
 
 
-def _scale(name: str, data: Mapping[str, Any]) -> float | None:
-    """Return the size of a scale; None if what it follows from cannot be read."""
+def _scale(scale: str, data: Mapping[str, Any], user: str) -> float:
+    """Return the size of a scale, for `user` and other parameters that are stated in it.
+
+    What is wrong with the scale itself is reported here, once, and not for each of them.
+    """
+    declared = dict(_declarations())
 
     def read(parameter: str) -> float:
-        declared = Pair.model_fields[parameter].json_schema_extra
-        assert isinstance(declared, dict)
-        return units.parse(data.get(parameter), str(declared["unit"]))
+        if data.get(parameter) is None:
+            raise ValueError(f"{parameter}: missing; {user} is stated in {scale}")
+        try:
+            return float(read_quantity(data[parameter], declared[parameter]))  # type: ignore[arg-type]
+        except (ValueError, TypeError) as error:
+            raise ValueError(f"{parameter}: found {shown(data[parameter])}; {error}") from None
 
-    try:
-        if name == "y_st":
-            return read("static_deflection")
-        if name == "m_red":
-            return read("reduced_mass")
-        highest = read("mesh_stiffness_max")
-        return stiffness.mean(read("contact_ratio"), highest, read("stiffness_ratio") * highest)
-    except ValueError:
-        return None  # validation says what is wrong with it
+    if scale == "y_st":
+        return read("static_deflection")
+    if scale == "m_red":
+        return read("reduced_mass")
+    highest = read("mesh_stiffness_max")
+    return stiffness.mean(read("contact_ratio"), highest, read("stiffness_ratio") * highest)
 
 
 class Quantity(NamedTuple):

@@ -49,7 +49,7 @@ def read_statement(name: str, data: object) -> Statement:
     for key in data:
         if key not in _KEYS:
             hint = nearest(str(key), _KEYS) or f"; allowed are {', '.join(_KEYS)}"
-            raise InputError(f"{name}.{key}: unknown key{hint}")
+            raise InputError(f"{name}.{key:.60}: unknown key{hint}")
     if data.get("value") is None:
         raise InputError(f"{name}.value: missing; a mapping states value, kind and reason")
     kind, reason = data.get("kind", STATED), data.get("reason", "")
@@ -59,5 +59,5 @@ def read_statement(name: str, data: object) -> Statement:
     if not isinstance(reason, str) or "\n" in reason.strip():
         raise InputError(f"{name}.reason: found {shown(reason)}; allowed is one line")
     if not reason.strip() and kind != STATED:
-        raise InputError(f"{name}.reason: missing; a {kind} value needs one line")
+        raise InputError(f"{name}.reason: missing; kind {kind} needs one line that says why")
     return Statement(data["value"], kind, reason.strip())

@@ -19,6 +19,14 @@ _EXPECTED = {
     "dict_type": "allowed is a mapping of keys to values",
     "tuple_type": "allowed is a list",
     "string_type": "allowed is a text",
+    "string_too_short": "allowed is a text that is not empty",
+    "string_too_long": "allowed are at most {max_length} characters",
+    "literal_error": "allowed is {expected}",
+    "too_long": "allowed are at most {max_length} values",
+    "bool_type": "allowed is true or false",
+    "bool_parsing": "allowed is true or false",
+    "float_type": "allowed is a number",
+    "int_type": "allowed is a whole number",
     "int_from_float": "allowed is a whole number",
 }
 
@@ -57,26 +65,48 @@ class Section(BaseModel):
             return value
         if declared["of_wheels"]:
             return _read_of_wheels(value, declared)
-        return _read(value, declared)
+        return read_quantity(value, declared)
 
 
 def _read_of_wheels(value: object, declared: Mapping[str, Any]) -> object:
     if not isinstance(value, list | tuple):
-        return (_read(value, declared),) * 2
-    if len(value) != 2:
-        raise ValueError(f"{len(value)} values; allowed is one, or two for wheels 3 and 2")
-    return _read(value, declared)
+        return (read_quantity(value, declared),) * 2
+    if len(value) != 2 or any(isinstance(item, list | tuple) for item in value):
+        raise ValueError("allowed is one value, or two for wheels 3 and 2")
+    return read_quantity(value, declared)
 
 
-def _read(value: object, declared: Mapping[str, Any]) -> object:
-    """Read a quantity, or (nested) lists of them, and check the range."""
+def read_quantity(value: object, declared: Mapping[str, Any]) -> object:
+    """Read a quantity, or (nested) lists of them, and check the range.
+
+    Parameters
+    ----------
+    value : object
+        As text or number, or lists of these.
+    declared : mapping
+        Unit and range, as `quantity` declares them.
+
+    Raises
+    ------
+    ValueError
+        With what is wrong and what is allowed.
+    """
     if isinstance(value, list | tuple):
-        return tuple(_read(item, declared) for item in value)
+        return tuple(_read_item(item, declared) for item in value)
     unit, low, high = declared["unit"], declared["low"], declared["high"]
     number = units.parse(value, unit)
     if not low <= number <= high:
         raise ValueError(f"out of range; allowed is {_range(low, high, unit)}")
     return number
+
+
+def _read_item(item: object, declared: Mapping[str, Any]) -> object:
+    try:
+        return read_quantity(item, declared)
+    except ValueError as error:
+        if isinstance(item, list | tuple):
+            raise
+        raise ValueError(f"in it {shown(item)} is wrong: {error}") from None
 
 
 def _range(low: float, high: float, unit: str) -> str:
@@ -113,7 +143,7 @@ def validate(model: type[Model], data: object, where: str, changed: Mapping[str,
     origin = _origin(slip.about, where, changed)
     more = f" (and {len(slips) - 1} more)" if len(slips) > 1 else ""
     line = ": ".join(part for part in (origin, slip.key, slip.text) if part) + more
-    raise InputError(" ".join(line.split())) from None
+    raise InputError(line) from None
 
 
 def _origin(key: str, where: str, changed: Mapping[str, str]) -> str:
@@ -139,7 +169,7 @@ def shown(value: object) -> str:
     if isinstance(value, Mapping):
         return "a mapping"
     if isinstance(value, list | tuple):
-        return "a list"
+        return f"a list of {len(value)}" if value else "an empty list"
     try:
         text = repr(value)
     except ValueError:  # an integer with thousands of digits
@@ -167,7 +197,9 @@ def _slips(model: type[BaseModel], data: object, error: ValidationError) -> list
         elif item["type"] == "missing":
             missing.append(_Slip(key, f"missing{_purpose(model, loc)}", key))
         else:
-            reason = _EXPECTED.get(item["type"], item["msg"]).removeprefix("Value error, ")
+            reason = item["msg"].removeprefix("Value error, ")
+            if item["type"] in _EXPECTED:
+                reason = _EXPECTED[item["type"]].format_map(item.get("ctx", {}))
             if item["type"] == "value_error" and _model_at(model, loc):
                 name, reason = reason.split(": ", 1)  # a check of a section names the key itself
                 wrong.append(_Slip(f"{key}.{name}".lstrip("."), reason, key))
@@ -193,8 +225,10 @@ def _model_at(model: type[BaseModel], loc: Sequence[int | str]) -> type[BaseMode
 
 
 def _purpose(model: type[BaseModel], loc: Sequence[int | str]) -> str:
+    """Say what a missing key, or the list with a missing item, is for."""
     section = _model_at(model, loc[:-1])
-    return f"; wanted is {section.model_fields[str(loc[-1])].description}" if section else ""
+    info = section.model_fields[str(loc[-1])] if section else model.model_fields[str(loc[0])]
+    return f"; wanted is {info.description}" if info.description else ""
 
 
 def _at(data: Any, loc: Sequence[int | str]) -> object:

@@ -7,7 +7,8 @@ configuration is data: nothing in it is evaluated.
 import math
 import re
 from functools import cache
-from typing import Any
+from numbers import Real
+from typing import Any, SupportsFloat
 
 import pint
 
@@ -18,7 +19,11 @@ _FACTORS = rf"{_FACTOR}(?:(?:\s*[*/·]\s*|\s+){_FACTOR})*"
 _UNIT = rf"{_FACTORS}(?:\s*/\s*\(\s*{_FACTORS}\s*\))?"
 _QUANTITY = re.compile(rf"\s*(?P<number>{_NUMBER})\s*(?P<unit>{_UNIT})?\s*")
 _MULTIPLE = re.compile(rf"\s*(?P<number>{_NUMBER})\s*(?P<scale>[A-Za-z]+_[A-Za-z]+)\s*")
-_LONGEST = 80  # characters: no quantity needs more, and the pattern above stays fast
+_DECIMAL_COMMA = re.compile(r"[0-9],[0-9]")
+_LONGEST = 80  # characters: no quantity needs more, and the patterns above stay fast
+
+SCALES = {"y_st": "mm", "m_red": "kg", "C_s": "N/mm"}
+"""What a quantity may be a multiple of, as in ``"8 y_st"``, and its unit."""
 
 _NAMES = {
     "1": "a plain number",
@@ -58,7 +63,7 @@ def parse(value: object, unit: str) -> float:
         If the text is no quantity, not finite, has no unit or one of another dimension; the
         message says what is wanted.
     """
-    if isinstance(value, bool) or not isinstance(value, str | int | float):
+    if isinstance(value, bool) or not isinstance(value, str | Real):
         raise ValueError(f"not a quantity; wanted is {wanted(unit)}")
     if isinstance(value, str):
         number, given = _split(value, unit)
@@ -87,10 +92,24 @@ def scaled(value: object, scale: str, size: float, unit: str) -> object:
     """
     if isinstance(value, list | tuple):
         return [scaled(item, scale, size, unit) for item in value]
-    match = _MULTIPLE.fullmatch(value) if isinstance(value, str) else None
+    match = _multiple(value)
     if match is None or match["scale"] != scale:
         return value
     return f"{float(match['number']) * size!r} {unit}"
+
+
+def is_multiple(value: object, scale: str) -> bool:
+    """Return whether a text, or one within a (nested) list, is a multiple of a scale."""
+    if isinstance(value, list | tuple):
+        return any(is_multiple(item, scale) for item in value)
+    match = _multiple(value)
+    return match is not None and match["scale"] == scale
+
+
+def _multiple(value: object) -> re.Match[str] | None:
+    if not isinstance(value, str) or len(value) > _LONGEST:
+        return None
+    return _MULTIPLE.fullmatch(value)
 
 
 def wanted(unit: str) -> str:
@@ -101,22 +120,27 @@ def wanted(unit: str) -> str:
 
 def _split(text: str, unit: str) -> tuple[float, str | None]:
     """Take a text apart into its number and its unit (None if there is none)."""
-    if _MULTIPLE.fullmatch(text):
-        raise ValueError(f"no scale of this kind; wanted is {wanted(unit)}")
+    if multiple := _multiple(text):
+        scale = multiple["scale"]
+        known = f"no scale '{scale}', only {', '.join(SCALES)}"
+        problem = f"'{scale}' cannot stand here" if scale in SCALES else known
+        raise ValueError(f"{problem}; wanted is {wanted(unit)}")
     match = _QUANTITY.fullmatch(text) if len(text) <= _LONGEST else None
     if match is None:
-        raise ValueError(f"not a quantity; wanted is {wanted(unit)}")
+        comma = len(text) <= _LONGEST and _DECIMAL_COMMA.search(text)
+        hint = "use a decimal point; " if comma else ""
+        raise ValueError(f"not a quantity; {hint}wanted is {wanted(unit)}")
     return _finite(float(match["number"]), unit), match["unit"]
 
 
-def _finite(number: float, unit: str) -> float:
+def _finite(number: SupportsFloat, unit: str) -> float:
     try:
-        number = float(number)
+        found = float(number)
     except OverflowError:
-        number = math.inf
-    if not math.isfinite(number):
+        found = math.inf
+    if not math.isfinite(found):
         raise ValueError(f"not finite; wanted is {wanted(unit)}")
-    return number
+    return found
 
 
 def _convert(number: float, given: str, unit: str) -> float:

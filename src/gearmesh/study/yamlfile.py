@@ -108,10 +108,6 @@ def _load(text: str, where: str) -> object:
     except yaml.MarkedYAMLError as error:
         mark = error.problem_mark or error.context_mark
         line = f" line {mark.line + 1}, column {mark.column + 1}:" if mark else ""
-        raise InputError(f"{where}:{line} {_one_line(error.problem or error.context)}") from None
+        raise InputError(f"{where}:{line} {error.problem or error.context}") from None
     except (yaml.YAMLError, RecursionError, ValueError) as error:
-        raise InputError(f"{where}: not YAML ({_one_line(error)})") from None
-
-
-def _one_line(message: object) -> str:
-    return " ".join(str(message).split())
+        raise InputError(f"{where}: not YAML ({error})") from None

@@ -74,7 +74,7 @@ class Claim(Section):
     @field_validator("expected", mode="before")
     @classmethod
     def _read_targets(cls, value: object) -> object:
-        if isinstance(value, dict) and not value.keys() & Bound.model_fields.keys():
+        if isinstance(value, dict) and value and not value.keys() & Bound.model_fields.keys():
             return {name: _target(target) for name, target in value.items()}
         return _target(value)
 
@@ -83,8 +83,9 @@ class Claim(Section):
         if (self.expected_status == REPRODUCED) != (self.reason is None):
             raise ValueError("reason: needed for an expected_status that is not 'reproduced' only")
         if isinstance(self.tolerance, dict):
-            named = self.expected if isinstance(self.expected, dict) else {}
-            for name in self.tolerance.keys() - named.keys():
+            if not isinstance(self.expected, dict):
+                raise ValueError("tolerance: found a mapping; allowed is a number, as for expected")
+            for name in self.tolerance.keys() - self.expected.keys():
                 raise ValueError(f"tolerance: expected names no quantity {name!r}")
         for name, target, tolerance in self.targets():
             of = f" of {name!r}" if name else ""
@@ -191,7 +192,9 @@ def load_ledger(path: Path) -> list[Claim]:
     claims = []
     for name, claim in content.items():
         if not isinstance(claim, dict):
-            raise InputError(f"{path}: {name}: found {shown(claim)}: allowed is a mapping of keys")
+            raise InputError(f"{path}: {name}: found {shown(claim)}; allowed is a mapping of keys")
+        if "id" in claim:
+            raise InputError(f"{path}: {name}: id: unknown key; {name} is the id")
         claims.append(validate(Claim, {"id": name} | claim, f"{path}: {name}", {}))
     return claims
 

@@ -6,7 +6,7 @@ of sticking, the length that the tolerance allows. Turning points come first: up
 y is monotone, so its end value tells whether it passes a level, and no touch of a level is lost.
 
 What acts after an event follows from discrete facts, never from how close a number is to 0. The
-event makes the quantity that located it exactly 0 (`general_series.MODE`); the sign of the first
+event makes the quantity that located it exactly 0 (`series.MODE`); the sign of the first
 coefficient of its series that does not vanish says where it goes from there. A quantity that has
 the wrong sign at the start of a step, left over by rounding, counts as such a 0 too. Only a motion
 as small as the rounding errors themselves, of a mesh at rest, has no direction and no extrema.

@@ -1,7 +1,7 @@
 """Both signs of eq. (6) with run-out, and sticking.
 
-`gearmesh.model.friction` states the rules. Here they act on the series of a step: which sign holds
-at its start, and where in it a sign changes or sticking ends.
+`gearmesh.model.friction` states the rules. Here they act on the series of a step: they find which
+sign holds at its start, and where in it a sign changes or sticking ends.
 """
 
 import numpy as np

@@ -5,11 +5,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 import yaml
-from gearmesh.identification.courses import ACCURACY, SampledCourses, look
 from project import Project
 
 from gearmesh.data import paths
+from gearmesh.dynamics.response_curves import WIDTH
 from gearmesh.identification import design, layout, store, survey, table
+from gearmesh.identification.curves import ACCURACY, SampledCurve, scan_all
 from gearmesh.identification.settings import KINDS, load_settings
 from gearmesh.model.variants import variant
 from gearmesh.reproduction import thresholds
@@ -19,14 +20,14 @@ SETTINGS = paths.CONFIG / "identify.yaml"
 
 
 @pytest.fixture
-def sample(parameters):
-    return design.stated(parameters)
+def sample(pair):
+    return design.stated(pair)
 
 
-def test_the_sample_of_a_study_is_the_study(parameters, sample):
-    again = design.pair_of(sample, parameters)
+def test_the_sample_of_a_study_is_the_study(pair, sample):
+    again = design.pair_of(sample, pair)
     for variant_name in ("c-material", "d-both"):
-        one, other = (p.problem(variant(variant_name), 0.7) for p in (parameters, again))
+        one, other = (p.problem(variant(variant_name), 0.7) for p in (pair, again))
         for name in one.__slots__:
             value = getattr(one, name)
             if isinstance(value, int | float | tuple) and value != ():
@@ -34,11 +35,19 @@ def test_the_sample_of_a_study_is_the_study(parameters, sample):
             assert getattr(other, name) == value, name
 
 
-def test_samples_fill_their_ranges(root, parameters):
+def test_a_sample_keeps_its_values_where_others_are_replaced(pair, sample):
+    """The study states its backlash as a multiple of y_st; the sample does not."""
+    drawn = design.pair_of(sample | {"backlash": 3.0}, pair)
+    assert drawn.replace(teeth=24).backlash == drawn.backlash == pytest.approx(0.03)
+    (backlash,) = (p for p in drawn.parameters if p.name == "backlash")
+    assert (backlash.kind, backlash.reason) == ("stated", "")
+
+
+def test_samples_fill_their_ranges(root, pair):
     settings = load_settings(root / SETTINGS)
     survey_design = settings.designs["survey"].model_copy(update={"points": 256})
     places = design.unit_points(survey_design)
-    drawn = design.samples(places, survey_design, settings, parameters)
+    drawn = design.samples(places, survey_design, settings, pair)
     for name in survey_design.vary:
         if name == "kind":
             counts = [sum(s["kind"] == kind for s in drawn) for kind in KINDS]
@@ -50,56 +59,54 @@ def test_samples_fill_their_ranges(root, parameters):
         assert drawn[0]["eccentricity_3"] == 0.0
 
 
-def test_first_looks_locate_thresholds_as_the_ledger_does(parameters, sample):
+def test_coarse_scans_locate_thresholds_as_the_ledger_does(pair, sample):
     names = ["c-lubricant", "c-material", "c-material-5x"]
-    courses = {name: SampledCourses(sample, parameters, name) for name in names}
-    look(list(courses.values()))
-    found = thresholds.locate_on(courses, parameters)
-    closely = {name: thresholds.Courses(parameters, name) for name in names}
-    expected = thresholds.locate_on(closely, parameters)
+    curves = {name: SampledCurve(sample, pair, name) for name in names}
+    scan_all(list(curves.values()))
+    found = thresholds.locate_on(curves, pair)
+    closely = {name: thresholds.curve_of(pair, name) for name in names}
+    expected = thresholds.locate_on(closely, pair)
     for observable, name in (
         ("first_jump", "c-lubricant"),
         ("second_jump", "c-lubricant"),
         ("loop_end", "c-material"),
         ("loop_end", "c-material-5x"),
     ):
-        within = ACCURACY + thresholds.WIDTH
+        within = ACCURACY + WIDTH
         assert found[observable][name] == pytest.approx(expected[observable][name], abs=within)
     crossing = "exceedance", "c-material-5x"
     np.testing.assert_allclose(*(f[crossing[0]][crossing[1]] for f in (found, expected)),
                                atol=ACCURACY)  # fmt: skip
-    assert sum(c.runs for c in courses.values()) < 0.6 * sum(c.runs for c in closely.values())
+    assert sum(c.runs for c in curves.values()) < 0.6 * sum(c.runs for c in closely.values())
 
 
 @pytest.mark.parametrize("kind", ["up", "down"])
-def test_a_sweep_goes_on_from_its_neighbour(parameters, sample, kind):
-    courses = SampledCourses(sample | {"kind": kind}, parameters, "b-lubricant")
-    look([courses])
-    first, second = (float(nu) for nu in courses.grid[:2])
+def test_a_sweep_goes_on_from_its_neighbour(pair, sample, kind):
+    curve = SampledCurve(sample | {"kind": kind}, pair, "b-lubricant")
+    scan_all([curve])
+    first, second = (float(nu) for nu in curve.grid[:2])
     assert (first < second) == (kind == "up")
-    start, following = courses.at([first, second])
-    by_hand = replace(
-        parameters.problem(variant("b-lubricant"), second), initial_state=start.final_state
-    )
-    assert following.y_max == simulate([by_hand], parameters.tolerance)[0].y_max
+    start, following = curve.at([first, second])
+    by_hand = replace(pair.problem(variant("b-lubricant"), second), initial_state=start.final_state)
+    assert following.y_max == simulate([by_hand], pair.tolerance)[0].y_max
     # Off the grid a run starts from the same neighbour as its next place on the grid.
     between = 0.5 * (first + second)
-    assert courses.problem(between).initial_state == start.final_state
+    assert curve.problem(between).initial_state == start.final_state
 
 
-def test_an_initial_velocity_is_one_of_the_mesh(parameters, sample):
-    courses = SampledCourses(sample | {"initial_velocity": 0.4}, parameters, "b-material")
-    (response,) = courses.at([0.7])
+def test_an_initial_velocity_is_one_of_the_mesh(pair, sample):
+    curve = SampledCurve(sample | {"initial_velocity": 0.4}, pair, "b-material")
+    (response,) = curve.at([0.7])
     assert response.strobe_v[0] == pytest.approx(0.4)
     assert response.strobe_y[0] == pytest.approx(1.0)
 
 
 @pytest.mark.filterwarnings("ignore::RuntimeWarning")
-def test_a_sample_does_not_depend_on_its_group(parameters, sample, monkeypatch):
+def test_a_sample_does_not_depend_on_its_group(pair, sample, monkeypatch):
     drawn = [sample, sample | {"damping_length": 0.3}, sample | {"kind": "up"}]
-    together = list(survey.measure(drawn, parameters))
+    together = list(survey.measure(drawn, pair))
     monkeypatch.setattr(survey, "_GROUP", 1)
-    alone = list(survey.measure(drawn, parameters))
+    alone = list(survey.measure(drawn, pair))
     assert [{k: repr(v) for k, v in row.items()} for row in together] == [
         {k: repr(v) for k, v in row.items()} for row in alone
     ]
