@@ -27,8 +27,8 @@ from gearmesh.model.friction import (
 )
 from gearmesh.model.problem import Problem, State
 
-Vector = Sequence[float] | np.ndarray
-"""Six coordinates, or their rates."""
+Six = Sequence[float] | np.ndarray
+"""Six coordinates or their rates; truncated Taylor series may stand in place of floats."""
 
 ROTATION_3, ROTATION_2, Y_3, Y_2, Z_3, Z_2 = range(6)
 """Places of R_b phi_3, R_b phi_2, y_3, y_2, z_3, z_2 among the coordinates."""
@@ -73,7 +73,7 @@ def mesh_phase(problem: Problem, time: float) -> float:
     return time / problem.period
 
 
-def angles(problem: Problem, time: float, q: Vector) -> tuple[float, float]:
+def angles(problem: Problem, time: float, q: Six) -> tuple[float, float]:
     """Return Phi_3 and Delta - Phi_2, where Phi_i = omega_i t + phi_i is a total rotation."""
     turned = problem.rotation_speed * time
     phi_3 = q[ROTATION_3] / problem.base_radius
@@ -81,7 +81,7 @@ def angles(problem: Problem, time: float, q: Vector) -> tuple[float, float]:
     return turned + phi_3, problem.eccentricity_angle - (turned + phi_2)
 
 
-def levers(problem: Problem, time: float, q: Vector) -> tuple[float, float]:
+def levers(problem: Problem, time: float, q: Six) -> tuple[float, float]:
     """Return dy/dphi_3 and dy/dphi_2 in R_b: run-out changes the lever of the normal force."""
     angle_3, angle_2 = angles(problem, time, q)
     return (
@@ -100,7 +100,7 @@ def deviation(problem: Problem, time: float) -> tuple[float, float]:
     return value, rate
 
 
-def relative_motion(problem: Problem, time: float, q: Vector, v: Vector) -> tuple[float, float]:
+def relative_motion(problem: Problem, time: float, q: Six, v: Six) -> tuple[float, float]:
     """Return the relative motion y of eq. (3) and its rate.
 
     Parameters
@@ -130,7 +130,7 @@ def mesh_stiffness(problem: Problem, phase: float, segment: float | None = None)
     return float(stiffness.rectangular(phase if segment is None else segment, *levels))
 
 
-def run_out_argument(problem: Problem, time: float, q: Vector, v: Vector) -> float:
+def run_out_argument(problem: Problem, time: float, q: Six, v: Six) -> float:
     """Return the bracket of eq. (6), e_3 Phi_3' sin Phi_3 - e_2 Phi_2' sin(Delta - Phi_2)."""
     angle_3, angle_2 = angles(problem, time, q)
     speed_3 = problem.rotation_speed + v[ROTATION_3] / problem.base_radius
@@ -146,7 +146,7 @@ def bearing_damping(problem: Problem) -> float:
     return problem.bearing_damping_ratio * critical
 
 
-def mode_of(problem: Problem, time: float, q: Vector, v: Vector) -> Mode:
+def mode_of(problem: Problem, time: float, q: Six, v: Six) -> Mode:
     """Return the branches that act in a state; where a sign has argument 0 it is +1."""
     y, _ = relative_motion(problem, time, q, v)
     regime = int(regime_of(y, problem.backlash))
@@ -158,7 +158,7 @@ def mode_of(problem: Problem, time: float, q: Vector, v: Vector) -> Mode:
 
 
 def friction_actions(
-    problem: Problem, time: float, q: Vector, v: Vector, mode: Mode, elastic: float
+    problem: Problem, time: float, q: Six, v: Six, mode: Mode, elastic: float
 ) -> tuple[float, float, float]:
     """Return F_T on wheel 3 and the additional moments on both wheels over R_b, in F_st."""
     phase = mesh_phase(problem, time)
@@ -178,14 +178,14 @@ def friction_actions(
     return force, moment_3, moment_2
 
 
-def bearing_pull(problem: Problem, q: Vector, v: Vector) -> float:
+def bearing_pull(problem: Problem, q: Six, v: Six) -> float:
     """Return the force of the bearings against z_3 - z_2."""
     pull = problem.bearing_stiffness * (q[Z_3] - q[Z_2])
     return pull + bearing_damping(problem) * (v[Z_3] - v[Z_2])
 
 
 def accelerations(
-    problem: Problem, time: float, q: Vector, v: Vector, mode: Mode | None = None
+    problem: Problem, time: float, q: Six, v: Six, mode: Mode | None = None
 ) -> np.ndarray:
     """Return the second time derivatives of the six coordinates.
 
