@@ -9,3 +9,7 @@ class InputError(ValueError):
 
     def __init__(self, message: str) -> None:
         super().__init__(" ".join(message.split()))
+
+
+class NoOrbit(RuntimeError):
+    """No periodic orbit was found, or a branch of orbits could not be followed; and why."""

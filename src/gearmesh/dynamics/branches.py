@@ -1,0 +1,165 @@
+"""Branches of orbits: how a periodic motion changes with a parameter, where it begins and ends."""
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from functools import partial
+from itertools import pairwise
+
+import numpy as np
+
+from gearmesh.dynamics.continuation import Curve, Family, Point, at_phase, clear_phase
+from gearmesh.dynamics.orbits import Orbit
+from gearmesh.dynamics.special_points import SpecialPoint, special_points
+from gearmesh.dynamics.walks import LONGEST_STEP, Piece, joined, points_of, walk
+from gearmesh.errors import NoOrbit
+from gearmesh.model.problem import Problem
+
+_AMPLITUDE = 1e-3  # of the first orbit after a flip
+
+
+@dataclass(frozen=True)
+class Branch:
+    """A branch of period-n orbits.
+
+    Attributes
+    ----------
+    parameter : str
+        Name of the parameter.
+    values : ndarray, shape (n,)
+        The parameter along the branch.
+    orbits : list of Orbit
+        The orbits at these values.
+    special : list of SpecialPoint
+        Special points in their order along the branch.
+    ends : tuple of two str
+        Why the branch stops at its first and at its last point: `LIMIT`, `CLOSED`, `HALVED`,
+        `FAR`, or what keeps the corrector from going on.
+    """
+
+    parameter: str
+    values: np.ndarray
+    orbits: list[Orbit]
+    special: list[SpecialPoint]
+    ends: tuple[str, str]
+
+    @property
+    def y_max(self) -> np.ndarray:
+        """Greatest y of each orbit."""
+        return np.array([orbit.y_max for orbit in self.orbits])
+
+    @property
+    def y_min(self) -> np.ndarray:
+        """Least y of each orbit."""
+        return np.array([orbit.y_min for orbit in self.orbits])
+
+    @property
+    def stable(self) -> np.ndarray:
+        """Whether each orbit is stable."""
+        return np.array([orbit.stable for orbit in self.orbits])
+
+    @property
+    def neutral(self) -> np.ndarray:
+        """Whether each orbit is neutral."""
+        return np.array([orbit.neutral for orbit in self.orbits])
+
+    @property
+    def multipliers(self) -> np.ndarray:
+        """Floquet multipliers, shape (n, 4)."""
+        return np.array([orbit.multipliers for orbit in self.orbits])
+
+
+def follow(
+    orbit: Orbit,
+    parameter: str,
+    limits: tuple[float, float],
+    family: Family | None = None,
+    value: float | None = None,
+    longest_step: float = LONGEST_STEP,
+) -> Branch:
+    """Follow an orbit in one parameter, in both directions.
+
+    Parameters
+    ----------
+    orbit : Orbit
+        Where to begin.
+    parameter : str
+        A field of `Problem`, or a name of what `family` varies.
+    limits : tuple of float
+        Range of the parameter.
+    family : callable, optional
+        The problem at a value of the parameter, if it is not a field of `Problem`.
+    value : float, optional
+        The parameter at `orbit`, if it is not a field of `Problem`.
+    longest_step : float
+        Longest step along the branch.
+
+    Raises
+    ------
+    NoOrbit
+        If the orbit is not on a branch of the family.
+    """
+    family = family or field_family(orbit.problem, parameter)
+    value = float(getattr(orbit.problem, parameter)) if value is None else value
+    low, high = limits
+    if not low <= value <= high:
+        raise NoOrbit(f"{parameter} = {value:.6g} of the orbit is outside {low:.6g} to {high:.6g}")
+    phase = orbit.problem.initial_phase
+    moved = at_phase(orbit, clear_phase(orbit))
+    curve = Curve(family, orbit.periods, (high - low,), moved.problem.initial_phase)
+    start = curve.at(moved, (value,))
+    back, ahead = walk(curve, start, (limits,), longest_step)
+    pieces = joined(back, ahead)
+    points = points_of(pieces)
+    special = [
+        SpecialPoint(kind, found.problem.nu, {parameter: point.values[0]}, found)
+        for kind, point in [*back.flip[: back is not ahead], *_special(pieces), *ahead.flip]
+        for found in (at_phase(point.orbit, phase),)
+    ]
+    return Branch(
+        parameter,
+        np.array([point.values[0] for point in points]),
+        [at_phase(point.orbit, phase) for point in points],
+        special,
+        (back.reason, ahead.reason),
+    )
+
+
+def field_family(problem: Problem, *names: str) -> Family:
+    """Return the problems that differ from `problem` in the named fields."""
+    changed: Callable[..., Problem] = partial(replace, problem)
+    return lambda *values: changed(**dict(zip(names, values, strict=True)))
+
+
+def _special(pieces: list[Piece]) -> list[tuple[str, Point]]:
+    return [
+        found
+        for piece in pieces
+        for left, right in pairwise(piece.points)
+        for found in special_points(piece.curve, left, right)
+    ]
+
+
+def double_period(point: SpecialPoint, family: Family | None = None) -> Orbit:
+    """Return an orbit of twice the period, close to a flip.
+
+    Parameters
+    ----------
+    point : SpecialPoint
+        Of kind ``"flip"``.
+    family : callable, optional
+        The problem at a value of the parameter, if it is not a field of `Problem`.
+
+    Raises
+    ------
+    NoOrbit
+        If the corrector does not converge.
+    """
+    ((parameter, value),) = point.parameters.items()
+    family = family or field_family(point.orbit.problem, parameter)
+    single = at_phase(point.orbit, clear_phase(point.orbit))
+    curve = Curve(family, 2 * single.periods, (1.0,), single.problem.initial_phase)
+    across = np.linalg.svd(single.passage.jacobian + np.eye(4))[2][-1]
+    normal = np.append(across, 0.0)
+    place = np.append(single.state, value) + _AMPLITUDE * normal
+    found = curve.point(place, normal, normal)
+    return at_phase(found.orbit, point.orbit.problem.initial_phase)

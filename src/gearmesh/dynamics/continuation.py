@@ -1,0 +1,217 @@
+"""Curves of orbits in state and parameters: corrector, tangent and steps by pseudo-arclength.
+
+The period-n orbits of a family of problems with one parameter are curves in the space of the state
+and the parameter. So are those orbits of a family with two parameters that meet one condition, such
+as a fold. The curves are smooth through grazings and folds, so they are followed by their
+arclength and not by a parameter.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from gearmesh.dynamics.orbits import LARGEST_RESIDUAL, Orbit
+from gearmesh.errors import NoOrbit
+from gearmesh.model.problem import Problem
+from gearmesh.solvers.reduced.period_map import advance, passage
+
+Family = Callable[..., Problem]
+"""The problem at the values of the parameters."""
+
+_MOST_CORRECTIONS = 12
+_DIFFERENCE = 1e-5
+_SHORTEST_STEP = 1e-7
+_PLACES = 64
+_LEAST_ALIGNMENT = 0.97  # cosine of the angle between neighbouring tangents
+_LARGEST_CORRECTION = 0.3  # of a step
+
+
+@dataclass(frozen=True)
+class Point:
+    """A point of a curve of orbits.
+
+    Attributes
+    ----------
+    place : ndarray, shape (4 + m,)
+        The state, and the m parameters in units of the curve.
+    values : tuple of float
+        The parameters.
+    tangent : ndarray, shape (4 + m,)
+        Unit tangent of the curve.
+    determinant : float
+        Determinant of the Jacobian of P^n(x) - x (and of the condition) in state and parameters,
+        bordered by the tangent.
+    orbit : Orbit
+    """
+
+    place: np.ndarray
+    values: tuple[float, ...]
+    tangent: np.ndarray
+    determinant: float
+    orbit: Orbit
+
+    def reversed(self) -> "Point":
+        """Return the same point, seen in the other direction along the curve."""
+        return replace(self, tangent=-self.tangent, determinant=-self.determinant)
+
+
+@dataclass(frozen=True)
+class Curve:
+    """The curves of period-n orbits of a family.
+
+    Attributes
+    ----------
+    family : callable
+        The problem at the values of the parameters.
+    periods : int
+        n.
+    units : tuple of float
+        Change of each parameter that counts like a change of 1 in the state.
+    phase : float
+        Mesh phase at which the state is taken. The state has a kink along the curve where it
+        passes an end of a regime at this very phase, because damping jumps there.
+    condition : callable, optional
+        With two parameters: what is 0 for the orbits of the curve.
+    """
+
+    family: Family
+    periods: int
+    units: tuple[float, ...]
+    phase: float
+    condition: Callable[[Orbit], float] | None = None
+
+    def point(self, place: np.ndarray, normal: np.ndarray, along: np.ndarray) -> Point:
+        """Return the point of the curve in the plane through `place` with the given normal.
+
+        Parameters
+        ----------
+        place, normal : ndarray, shape (4 + m,)
+        along : ndarray, shape (4 + m,)
+            Direction that the tangent follows.
+
+        Raises
+        ------
+        NoOrbit
+            If Newton's method does not converge.
+        """
+        origin, best = place, np.inf
+        orbit, gradients = self._orbit(place), self._gradients(place)
+        for _ in range(_MOST_CORRECTIONS):
+            defect = self._defect(orbit)
+            if not np.abs(defect).max() < best:
+                break
+            best = float(np.abs(defect).max())
+            found, found_orbit = place, orbit
+            gradients[:4, :4] = orbit.passage.jacobian - np.eye(4)
+            try:
+                correction = np.linalg.solve(
+                    np.vstack([gradients, normal]), np.append(defect, normal @ (place - origin))
+                )
+            except np.linalg.LinAlgError as error:
+                raise NoOrbit("the curve is singular here") from error
+            place = place - correction
+            orbit = self._orbit(place)
+        if not best < LARGEST_RESIDUAL:
+            raise NoOrbit(f"the corrector stops at a residual of {best:.1e}")
+        gradients = self._gradients(found)
+        gradients[:4, :4] = found_orbit.passage.jacobian - np.eye(4)
+        tangent = np.linalg.svd(gradients)[2][-1]
+        if tangent @ along < 0.0:
+            tangent = -tangent
+        determinant = float(np.linalg.det(np.vstack([gradients, tangent])))
+        return Point(found, self._values(found), tangent, determinant, found_orbit)
+
+    def at(self, orbit: Orbit, values: tuple[float, ...]) -> Point:
+        """Return the point near `orbit` at a value of the first parameter, or near several.
+
+        Its tangent points to more of the first parameter.
+        """
+        up = np.zeros(4 + len(values))
+        up[4] = 1.0
+        return self.point(np.append(orbit.state, np.divide(values, self.units)), up, up)
+
+    def moved_to(self, phase: float, point: Point) -> tuple["Curve", Point]:
+        """Return the curve with its state taken at another phase, and a point on it."""
+        other = replace(self, phase=phase)
+        near = self.step(point, _DIFFERENCE)
+        here, there = (at_phase(one.orbit, phase).state for one in (point, near))
+        along = np.append((there - here) / _DIFFERENCE, point.tangent[4:])
+        along /= np.linalg.norm(along)
+        return other, other.point(np.append(here, point.place[4:]), along, along)
+
+    def step(self, point: Point, length: float) -> Point:
+        """Return the point one step ahead along the tangent."""
+        return self.point(point.place + length * point.tangent, point.tangent, point.tangent)
+
+    def step_on(self, point: Point, length: float) -> tuple[Point, float]:
+        """Return the next point after `point` and the length of the step that reaches it.
+
+        The step is at most `length`, and shorter where the curve bends.
+
+        Raises
+        ------
+        NoOrbit
+            If the curve cannot be followed further.
+        """
+        reason = "it bends too sharply"
+        while length > _SHORTEST_STEP:
+            try:
+                following = self.step(point, length)
+                moved = following.place - point.place - length * point.tangent
+                straight = following.tangent @ point.tangent > _LEAST_ALIGNMENT
+                if straight and np.linalg.norm(moved) < _LARGEST_CORRECTION * length:
+                    return following, length
+            except NoOrbit as error:
+                reason = str(error)
+            length *= 0.5
+        raise NoOrbit(reason)
+
+    def _orbit(self, place: np.ndarray) -> Orbit:
+        problem = self.family(*self._values(place))
+        problem = replace(problem, initial_phase=self.phase, initial_state=None)
+        moved = passage(problem, place[:4], self.periods)
+        if moved.status != "complete":
+            raise NoOrbit(f"the motion ends with {moved.status}")
+        return Orbit(problem, self.periods, place[:4], moved)
+
+    def _values(self, place: np.ndarray) -> tuple[float, ...]:
+        return tuple(float(value) for value in place[4:] * self.units)
+
+    def _defect(self, orbit: Orbit) -> np.ndarray:
+        defect = orbit.passage.end - orbit.state
+        return defect if self.condition is None else np.append(defect, self.condition(orbit))
+
+    def _gradients(self, place: np.ndarray) -> np.ndarray:
+        """Return the gradients of the defect by differences, but for those of P^n in the state.
+
+        They decide the direction of Newton's steps and not where they end.
+        """
+        rows = len(place) - 1
+        gradients = np.zeros((rows, len(place)))
+        for i in range(4 if self.condition is None else 0, len(place)):
+            away = _DIFFERENCE * np.eye(len(place))[i]
+            ahead, behind = (self._defect(self._orbit(place + side * away)) for side in (1.0, -1.0))
+            gradients[:, i] = (ahead - behind) / (2.0 * _DIFFERENCE)
+        return gradients
+
+
+def at_phase(orbit: Orbit, phase: float) -> Orbit:
+    """Return an orbit with its state taken at another mesh phase."""
+    share = (phase - orbit.problem.initial_phase) % 1.0
+    state = advance(orbit.problem, orbit.state, share)
+    problem = replace(orbit.problem, initial_phase=phase)
+    return Orbit(problem, orbit.periods, state, passage(problem, state, orbit.periods))
+
+
+def clear_phase(orbit: Orbit) -> float:
+    """Return a mesh phase at which the orbit is far from the ends of its regimes.
+
+    It is the phase of the orbit's state as long as this is half as far from them as it can be.
+    """
+    course = orbit.time_course(_PLACES)
+    away = np.minimum(np.abs(course.y), np.abs(course.y + orbit.problem.backlash))
+    phase = orbit.problem.initial_phase
+    if away[0] < 0.5 * away.max():
+        phase += int(np.argmax(away)) / _PLACES
+    return float(phase % 1.0)

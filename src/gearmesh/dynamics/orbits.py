@@ -1,0 +1,281 @@
+"""Periodic orbits of the reduced system: shooting, Floquet multipliers, and their certificates.
+
+A period-n orbit is a fixed point of the n-th power of the stroboscopic map P, which takes the
+state (y, y', b, b') at the initial phase to the state one mesh period later. Newton's method on
+P^n(x) - x uses the exact Jacobian of `gearmesh.solvers.reduced.period_map`.
+"""
+
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+from typing import NamedTuple
+
+import numpy as np
+
+from gearmesh.dynamics.starts import starts
+from gearmesh.errors import NoOrbit
+from gearmesh.model.contact import CONTACT_LOSS, INVERSE_MESH, regime_of
+from gearmesh.model.problem import Problem
+from gearmesh.solvers.reduced.period_map import LONGEST_ANGLE, Passage, passage
+from gearmesh.solvers.reduced.runs import is_reducible
+from gearmesh.solvers.reduced.variational import (
+    AFTER,
+    CROSSING,
+    HEIGHT,
+    KIND,
+    REGIME,
+    TIME,
+    TURN,
+)
+
+LARGEST_RESIDUAL = 1e-11
+"""Largest |P^n(x) - x| of an orbit, in y_st and y_st Omega_s."""
+
+_MOST_CORRECTIONS = 40
+_SHORTEST_CORRECTION = 1.0 / 1024.0
+# States this close are the same: a shorter period is looked for at this distance.
+_SAME = 1e-8
+# A multiplier of a motion without damping outside the unit circle by more than this is unstable.
+_LEAST_GROWTH = 1e-7
+
+
+class Certificate(NamedTuple):
+    """What the numbers of an orbit can be trusted for.
+
+    Attributes
+    ----------
+    residual : float
+        |P^n(x) - x|, in y_st and y_st Omega_s.
+    extremum_margin : float
+        Least distance in y_st from an extremum of y to the ends of its regime. It is negative if
+        an event was missed, and near 0 if the orbit grazes.
+    least_force : float
+        Least force in F_st between flanks that touch; infinity if none do. Where it is negative
+        the damping law pulls.
+    multiplier_error : float
+        Estimated error of the multipliers: their change with half the step and one more
+        correction of the state, or the error of their product by Liouville's formula.
+    """
+
+    residual: float
+    extremum_margin: float
+    least_force: float
+    multiplier_error: float
+
+
+class TimeCourse(NamedTuple):
+    """The time course of an orbit over its own period; every array has shape (n,).
+
+    Attributes
+    ----------
+    time : ndarray
+        In tau_s, from the initial phase.
+    y, v, a : ndarray
+        y and its first two derivatives.
+    regime : ndarray of int
+        See `gearmesh.model.contact`.
+    """
+
+    time: np.ndarray
+    y: np.ndarray
+    v: np.ndarray
+    a: np.ndarray
+    regime: np.ndarray
+
+
+@dataclass(frozen=True)
+class Orbit:
+    """A periodic orbit of the reduced system, in dimensionless form.
+
+    Attributes
+    ----------
+    problem : Problem
+        The gear pair; its initial state and its revolutions do not matter.
+    periods : int
+        The least period n, in mesh periods.
+    state : ndarray, shape (4,)
+        y, y', b, b' at `Problem.initial_phase`.
+    passage : Passage
+        The motion over the period of the orbit.
+    """
+
+    problem: Problem
+    periods: int
+    state: np.ndarray
+    passage: Passage = field(repr=False)
+
+    @property
+    def y(self) -> float:
+        """Relative motion y at the initial phase."""
+        return float(self.state[0])
+
+    @property
+    def v(self) -> float:
+        """Velocity y' at the initial phase."""
+        return float(self.state[1])
+
+    @property
+    def residual(self) -> float:
+        """|P^n(x) - x|."""
+        return float(np.abs(self.passage.end - self.state).max())
+
+    @cached_property
+    def multipliers(self) -> np.ndarray:
+        """Floquet multipliers, complex array of shape (4,), the largest modulus first."""
+        return _sorted(np.linalg.eigvals(self.passage.jacobian))
+
+    @property
+    def neutral(self) -> bool:
+        """Whether no damping of the mesh acts along the orbit and nothing grows.
+
+        Its multipliers then stand on the unit circle, but for what the bearings take.
+        """
+        return self.passage.damping == 0.0 and not self._grows(_LEAST_GROWTH)
+
+    @property
+    def stable(self) -> bool:
+        """Whether all multipliers are inside the unit circle and the orbit is not neutral."""
+        return not self.neutral and not self._grows(0.0)
+
+    def _grows(self, margin: float) -> bool:
+        return bool(np.abs(self.multipliers[0]) >= 1.0 + margin)
+
+    @cached_property
+    def signature(self) -> tuple[int, ...]:
+        """Regimes in their order over the orbit's own period, normal mesh first if it occurs.
+
+        The orbit is cyclic, so the signature begins where it is greatest and does not depend on
+        the initial phase.
+        """
+        events = self.passage.events
+        sequence = [int(event[REGIME]) for event in events[events[:, KIND] == CROSSING]]
+        if not sequence:
+            return (int(regime_of(self.y, self.problem.backlash)),)
+        return max(tuple(sequence[i:] + sequence[:i]) for i in range(len(sequence)))
+
+    @cached_property
+    def extrema(self) -> np.ndarray:
+        """Extrema of y over the orbit's own period, shape (n, 3): time, y, kind (1 or -1)."""
+        turns = self._turns
+        return np.column_stack([turns[:, TIME], turns[:, HEIGHT], -np.sign(turns[:, AFTER])])
+
+    @property
+    def _turns(self) -> np.ndarray:
+        events = self.passage.events
+        return events[events[:, KIND] == TURN]
+
+    @property
+    def y_max(self) -> float:
+        """Greatest y."""
+        return float(self.extrema[:, 1].max(initial=self.y))
+
+    @property
+    def y_min(self) -> float:
+        """Least y."""
+        return float(self.extrema[:, 1].min(initial=self.y))
+
+    @cached_property
+    def certificate(self) -> Certificate:
+        """Residual, margin of the extrema, least force and error of the multipliers."""
+        turns, back = self._turns, -self.problem.backlash
+        inside = turns[:, REGIME] * turns[:, HEIGHT]
+        lost, inverse = turns[:, REGIME] == CONTACT_LOSS, turns[:, REGIME] == INVERSE_MESH
+        inside[lost] = np.minimum(-turns[lost, HEIGHT], turns[lost, HEIGHT] - back)
+        inside[inverse] = back - turns[inverse, HEIGHT]
+        corrected = self.state + _correction(self.passage, self.state)
+        finer = passage(self.problem, corrected, self.periods, longest_angle=0.5 * LONGEST_ANGLE)
+        others = np.linalg.eigvals(finer.jacobian)
+        changes = [float(np.abs(others - one).min()) for one in self.multipliers]
+        product = np.linalg.det(self.passage.jacobian)
+        error = max(*changes, float(abs(product - np.exp(self.passage.log_determinant))))
+        return Certificate(
+            self.residual, float(inside.min(initial=np.inf)), self.passage.least_force, error
+        )
+
+    def time_course(self, samples_per_period: int = 256) -> TimeCourse:
+        """Return the time course, with `samples_per_period` samples in a mesh period."""
+        moved = passage(self.problem, self.state, self.periods, samples_per_period)
+        y, v, a, regime = moved.samples.T
+        time = np.arange(y.size) * (self.problem.period / samples_per_period)
+        return TimeCourse(time, y, v, a, regime.astype(np.int8))
+
+
+def find_orbit(problem: Problem, periods: int = 1, start: np.ndarray | None = None) -> Orbit:
+    """Return an orbit of least period `periods`.
+
+    Parameters
+    ----------
+    problem : Problem
+        Without run-out, profile deviation and Fourier stiffness.
+    periods : int
+        Least period n in mesh periods, >= 1.
+    start : array_like, shape (4,), optional
+        y, y', b, b' at the initial phase near the orbit. By default several are tried: the
+        periodic motion without contact loss, the ends of long runs, and a grid of states.
+
+    Raises
+    ------
+    NoOrbit
+        If no start leads to an orbit.
+    """
+    if not is_reducible(problem):
+        raise NoOrbit("orbits: run-out, profile deviation and Fourier stiffness are not covered")
+    reason = ""
+    for state in starts(problem) if start is None else [np.asarray(start, float)]:
+        try:
+            return correct(problem, state, periods)
+        except NoOrbit as error:
+            reason = reason or str(error)
+    raise NoOrbit(f"no orbit of period {periods} at nu = {problem.nu:.6g}: {reason}")
+
+
+def correct(problem: Problem, state: np.ndarray, periods: int = 1) -> Orbit:
+    """Return the orbit of least period `periods` to which Newton's method leads from a state.
+
+    Raises
+    ------
+    NoOrbit
+        If it does not converge, or leads to an orbit of a shorter period.
+    """
+    problem = replace(problem, initial_state=None)
+    orbit = Orbit(problem, periods, state, passage(problem, state, periods))
+    for _ in range(_MOST_CORRECTIONS):
+        if orbit.passage.status != "complete":
+            raise NoOrbit(f"the motion ends with {orbit.passage.status}")
+        better = _improve(orbit)
+        if better is None:
+            break
+        orbit = better
+    if not orbit.residual < LARGEST_RESIDUAL:
+        raise NoOrbit(f"Newton's method stops at a residual of {orbit.residual:.1e}")
+    for shorter in range(1, periods):
+        if periods % shorter == 0:
+            end = passage(problem, orbit.state, shorter).end
+            if np.abs(end - orbit.state).max() < _SAME:
+                raise NoOrbit(f"Newton's method leads to an orbit of period {shorter}")
+    return orbit
+
+
+def _improve(orbit: Orbit) -> Orbit | None:
+    """Return the orbit after one damped correction, or None if none makes it better."""
+    correction = _correction(orbit.passage, orbit.state)
+    share = 1.0
+    while share >= _SHORTEST_CORRECTION:
+        state = orbit.state + share * correction
+        moved = passage(orbit.problem, state, orbit.periods)
+        candidate = replace(orbit, state=state, passage=moved)
+        if moved.status == "complete" and candidate.residual < (1.0 - 0.1 * share) * orbit.residual:
+            return candidate
+        share *= 0.5
+    return None
+
+
+def _correction(moved: Passage, state: np.ndarray) -> np.ndarray:
+    """Return Newton's correction of a state on P^n(x) - x; the shortest one if it is singular."""
+    matrix = moved.jacobian - np.eye(4)
+    return np.linalg.lstsq(matrix, state - moved.end, rcond=1e-14)[0]
+
+
+def _sorted(multipliers: np.ndarray) -> np.ndarray:
+    """Return multipliers as complex numbers, the largest modulus first, conjugates together."""
+    values = multipliers.astype(complex)
+    return values[np.lexsort([-values.imag, -values.real, -np.abs(values)])]

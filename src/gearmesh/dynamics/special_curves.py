@@ -1,0 +1,154 @@
+"""Curves of special points in two parameters, and the cusps where folds vanish."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from itertools import pairwise
+
+import numpy as np
+
+from gearmesh.dynamics.branches import field_family
+from gearmesh.dynamics.continuation import Curve, Family, Point, at_phase, clear_phase
+from gearmesh.dynamics.orbits import Orbit
+from gearmesh.dynamics.special_points import (
+    SpecialPoint,
+    flip_test,
+    search,
+    stiffness_jumps,
+    torus_test,
+)
+from gearmesh.dynamics.walks import LONGEST_STEP, joined, points_of, walk
+from gearmesh.errors import NoOrbit
+from gearmesh.solvers.reduced.variational import VELOCITY
+
+
+@dataclass(frozen=True)
+class SpecialCurve:
+    """Special points of one kind along a curve in two parameters.
+
+    Attributes
+    ----------
+    kind : str
+        Kind of the special points.
+    parameters : tuple of two str
+        Names of the parameters.
+    values : ndarray, shape (n, 2)
+        The parameters along the curve.
+    orbits : list of Orbit
+        The orbits there.
+    cusps : list of SpecialPoint
+        Of a curve of folds: where two folds meet and vanish.
+    ends : tuple of two str
+        Why the curve stops at its first and at its last point, see `gearmesh.dynamics.walks`.
+    """
+
+    kind: str
+    parameters: tuple[str, str]
+    values: np.ndarray
+    orbits: list[Orbit]
+    cusps: list[SpecialPoint]
+    ends: tuple[str, str]
+
+
+def follow_special(
+    point: SpecialPoint,
+    parameters: tuple[str, str],
+    limits: tuple[tuple[float, float], tuple[float, float]],
+    family: Family | None = None,
+    values: tuple[float, ...] | None = None,
+    longest_step: float = LONGEST_STEP,
+) -> SpecialCurve:
+    """Follow a special point in two parameters, in both directions.
+
+    Parameters
+    ----------
+    point : SpecialPoint
+        Of any kind but ``"branch_point"``, which one more parameter takes away.
+    parameters : tuple of two str
+        Fields of `Problem`, or names of what `family` varies.
+    limits : tuple of two tuples of float
+        Range of each parameter.
+    family : callable, optional
+        The problem at two values, if the parameters are not fields of `Problem`.
+    values : tuple of two float, optional
+        The parameters at `point`, if they are not fields of `Problem`.
+    longest_step : float
+        Longest step along the curve.
+
+    Raises
+    ------
+    NoOrbit
+        If the curve cannot be followed from `point`.
+    """
+    if point.kind not in _CONDITIONS:
+        raise NoOrbit(f"special points: no curve of {point.kind!r}, only of {list(_CONDITIONS)}")
+    problem = point.orbit.problem
+    family = family or field_family(problem, *parameters)
+    values = values or tuple(float(getattr(problem, name)) for name in parameters)
+    moved = at_phase(point.orbit, clear_phase(point.orbit))
+    units = tuple(high - low for low, high in limits)
+    phase = moved.problem.initial_phase
+    curve = Curve(family, moved.periods, units, phase, _CONDITIONS[point.kind])
+    back, ahead = walk(curve, _start(curve, moved, values), limits, longest_step)
+    pieces = joined(back, ahead)
+    cusps = [
+        SpecialPoint(
+            "cusp", orbit.problem.nu, dict(zip(parameters, cusp.values, strict=True)), orbit
+        )
+        for piece in pieces
+        for left, right in pairwise(piece.points)
+        if point.kind == "fold"
+        for _, cusp in search(piece.curve, left, right, [("cusp", _turned_back(left))])
+        for orbit in (at_phase(cusp.orbit, problem.initial_phase),)
+    ]
+    points = points_of(pieces)
+    return SpecialCurve(
+        point.kind,
+        parameters,
+        np.array([one.values for one in points]),
+        [at_phase(one.orbit, problem.initial_phase) for one in points],
+        cusps,
+        (back.reason, ahead.reason),
+    )
+
+
+def _start(curve: Curve, orbit: Orbit, values: tuple[float, ...]) -> Point:
+    """Return the first point of a curve, the tangent towards more of the second parameter."""
+    for fixed in (5, 4):
+        normal = np.eye(6)[fixed]
+        place = np.append(orbit.state, np.divide(values, curve.units))
+        try:
+            return curve.point(place, normal, np.eye(6)[5])
+        except NoOrbit as error:
+            reason = error
+    raise reason
+
+
+def _turned_back(left: Point) -> Callable[[Point], float]:
+    """Return the test for a cusp: there both parameters turn back."""
+    return lambda point: float(point.tangent[4:] @ left.tangent[4:])
+
+
+def _least_height(level: float) -> Callable[[Orbit], float]:
+    """Return the height above a level, in multiples of the backlash, of the extremum next to it."""
+
+    def height(orbit: Orbit) -> float:
+        above = orbit.extrema[:, 1] - level * orbit.problem.backlash
+        return float(above[np.argmin(np.abs(above))])
+
+    return height
+
+
+def _least_velocity(orbit: Orbit) -> float:
+    """Return the velocity at the switch of C(t) where it is least."""
+    velocities = stiffness_jumps(orbit)[:, VELOCITY]
+    return float(velocities[np.argmin(np.abs(velocities))])
+
+
+_CONDITIONS: dict[str, Callable[[Orbit], float]] = {
+    "fold": lambda orbit: float(np.linalg.det(orbit.passage.jacobian - np.eye(4))),
+    "flip": flip_test,
+    "torus": torus_test,
+    "grazing_front": _least_height(0.0),
+    "grazing_back": _least_height(-1.0),
+    "switching": _least_velocity,
+}

@@ -1,0 +1,230 @@
+"""Special points of a branch: test functions that pass 0 there, and where they do.
+
+Between two neighbouring points of a branch every test function is known with its slope. Where it
+changes its sign, a root is located on the branch itself. Where its tangents at both ends leave
+room for two roots in between, the piece of the branch is halved until they do not.
+"""
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from itertools import combinations, pairwise
+
+import numpy as np
+from scipy.optimize import brentq
+
+from gearmesh.dynamics.continuation import Curve, Point
+from gearmesh.dynamics.orbits import Orbit
+from gearmesh.solvers.reduced.period_map import segments_of
+from gearmesh.solvers.reduced.variational import AFTER, BEFORE, KIND, SEGMENT, SWITCH, VELOCITY
+
+KINDS = ("fold", "flip", "torus", "branch_point", "grazing_front", "grazing_back", "switching")
+"""All kinds of special points."""
+
+Test = tuple[str, Callable[[Point], float]]
+"""A kind, and a function of the points of a branch that passes 0 at a special point."""
+
+_OFFSET = 1e-5
+_NARROWEST = 1e-6  # piece of a branch in which two roots of one test are not told apart
+_NARROWEST_PIECE = 1e-11  # between two grazings, in which multipliers are tested
+_ROOT_WIDTH = 1e-13
+_LARGEST_VALUE = 1e-7  # of a test function at its root: more is a jump
+_LEAST_SLOPE = 1e-6  # of the parameter along a branch at both sides of a fold
+_SAME_PHASE = 0.2  # mesh periods between an extremum and the same one further on
+
+
+@dataclass(frozen=True)
+class SpecialPoint:
+    """A point of a branch where something changes.
+
+    Attributes
+    ----------
+    kind : str
+        One of `KINDS`.
+    nu : float
+        Mesh frequency nu_s.
+    parameters : dict
+        The parameter that the branch follows, by name.
+    orbit : Orbit
+    """
+
+    kind: str
+    nu: float
+    parameters: dict[str, float]
+    orbit: Orbit
+
+
+def search(curve: Curve, left: Point, right: Point, tests: list[Test]) -> list[tuple[str, Point]]:
+    """Return where tests pass 0 between two neighbouring points of a curve, in their order."""
+    found = _search(curve, left, right, tests)
+    return sorted(found, key=lambda item: float(left.tangent @ item[1].place))
+
+
+def special_points(curve: Curve, left: Point, right: Point) -> list[tuple[str, Point]]:
+    """Return the special points between two neighbouring points of a branch, in their order.
+
+    Multipliers have a root singularity where the orbit grazes, so they are tested in the pieces
+    between the grazings and not across them.
+    """
+    events = search(curve, left, right, _event_tests(left))
+    ends = [left, *(point for _, point in events), right]
+    bifurcations = [
+        found
+        for start, end in pairwise(ends)
+        if _length(start, end) > _NARROWEST_PIECE
+        for found in search(curve, start, end, _bifurcation_tests())
+    ]
+    order = [*events, *bifurcations]
+    return sorted(order, key=lambda item: float(left.tangent @ item[1].place))
+
+
+def _search(
+    curve: Curve, left: Point, right: Point, tests: list[Test]
+) -> Iterator[tuple[str, Point]]:
+    offset = min(_OFFSET, 0.1 * _length(left, right))
+    ahead, behind = curve.step(left, offset), curve.step(right, -offset)
+    for kind, test in tests:
+        pieces = [(left, ahead, behind, right, offset)]
+        while pieces:
+            start, near, far, end, offset = pieces.pop()
+            before, after = test(start), test(end)
+            if np.isnan(before) or np.isnan(after):
+                continue
+            length = _length(start, end)
+            if (before < 0.0) != (after < 0.0):
+                point = _locate(curve, start, end, test)
+                if _confirmed(kind, test, start, point, end):
+                    yield kind, point
+            elif _may_dip(before, test(near), test(far), after, length, offset):
+                middle = curve.step(start, 0.5 * length)
+                below, above = curve.step(middle, -offset), curve.step(middle, offset)
+                pieces += [
+                    (start, near, below, middle, offset),
+                    (middle, above, far, end, offset),
+                ]
+
+
+def _length(left: Point, right: Point) -> float:
+    return float(left.tangent @ (right.place - left.place))
+
+
+def _may_dip(
+    before: float, ahead: float, behind: float, after: float, length: float, offset: float
+) -> bool:
+    """Return whether a function of one sign at both ends may pass 0 in between.
+
+    Where it approaches 0 at both ends, the tangents there bound a convex function from below.
+    """
+    sign = -1.0 if before < 0.0 else 1.0
+    down, up = sign * (ahead - before) / offset, sign * (after - behind) / offset
+    if length < _NARROWEST or not (down < 0.0 < up):
+        return False
+    where = (sign * (after - before) - up * length) / (down - up)
+    return bool(sign * before + down * where < 0.0)
+
+
+def _locate(curve: Curve, left: Point, right: Point, test: Callable[[Point], float]) -> Point:
+    """Return the point between two others where a test function passes 0."""
+
+    def at(share: float) -> Point:
+        if share in (0.0, 1.0):
+            return right if share else left
+        place = left.place + share * (right.place - left.place)
+        return curve.point(place, left.tangent, left.tangent)
+
+    return at(brentq(lambda share: test(at(share)), 0.0, 1.0, xtol=_ROOT_WIDTH))
+
+
+def _confirmed(
+    kind: str, test: Callable[[Point], float], left: Point, point: Point, right: Point
+) -> bool:
+    """Return whether a test function is continuous at its root, and what it shows is there."""
+    scale = max(1.0, abs(test(left)), abs(test(right)))
+    if not abs(test(point)) < _LARGEST_VALUE * scale:
+        return False
+    if kind == "fold":
+        return min(abs(left.tangent[4]), abs(right.tangent[4])) > _LEAST_SLOPE
+    if kind == "torus":
+        return _has_pair_on_the_unit_circle(point.orbit)
+    if kind == "branch_point":
+        return left.tangent[4] * right.tangent[4] > 0.0
+    return True
+
+
+def _has_pair_on_the_unit_circle(orbit: Orbit) -> bool:
+    """Return whether it is a complex pair, and not two real multipliers, whose product is 1."""
+    products = [(abs(a * b - 1.0), a) for a, b in combinations(orbit.multipliers, 2)]
+    return bool(abs(min(products, key=lambda item: item[0])[1].imag) > 1e-6)
+
+
+def _bifurcation_tests() -> list[Test]:
+    return [
+        ("fold", lambda point: float(point.tangent[4])),
+        ("branch_point", lambda point: point.determinant),
+        ("flip", lambda point: flip_test(point.orbit)),
+        ("torus", lambda point: torus_test(point.orbit)),
+    ]
+
+
+def flip_test(orbit: Orbit) -> float:
+    """Return the product of all mu_i + 1."""
+    return float(np.linalg.det(orbit.passage.jacobian + np.eye(4)))
+
+
+def _event_tests(point: Point) -> list[Test]:
+    """Return the tests for events that appear or vanish near a point of a branch."""
+    tests: list[Test] = []
+    for time, _, kind in point.orbit.extrema:
+        phase = time / point.orbit.problem.period
+        tests.append(("grazing_front", _height_above(0.0, phase, kind)))
+        tests.append(("grazing_back", _height_above(-1.0, phase, kind)))
+    for number, switch in enumerate(stiffness_jumps(point.orbit)):
+        if switch[BEFORE] * switch[AFTER] < 0.0:
+            tests.append(("switching", _velocity_at(number)))
+    return tests
+
+
+def torus_test(orbit: Orbit) -> float:
+    """Return the product of all mu_i mu_k - 1, which is 0 where a pair is on the unit circle.
+
+    Without damping in the mesh a pair may stand there all along the branch: no number then.
+    """
+    if orbit.passage.damping == 0.0:
+        return float("nan")
+    return float(np.prod([a * b - 1.0 for a, b in combinations(orbit.multipliers, 2)]).real)
+
+
+def _height_above(level: float, phase: float, kind: float) -> Callable[[Point], float]:
+    """Return the test of the extremum of a kind near a phase: its height above a level.
+
+    The level is given in multiples of the backlash.
+    """
+
+    def height(point: Point) -> float:
+        orbit = point.orbit
+        same = orbit.extrema[orbit.extrema[:, 2] == kind]
+        away = same[:, 0] / orbit.problem.period - phase
+        away = np.abs(away - orbit.periods * np.round(away / orbit.periods))
+        if not away.size or away.min() > _SAME_PHASE:
+            return float("nan")
+        return float(same[np.argmin(away), 1] - level * orbit.problem.backlash)
+
+    return height
+
+
+def _velocity_at(number: int) -> Callable[[Point], float]:
+    """Return the test of a switch of C(t): the velocity there."""
+
+    def velocity(point: Point) -> float:
+        switches = stiffness_jumps(point.orbit)
+        return float(switches[number, VELOCITY]) if number < len(switches) else float("nan")
+
+    return velocity
+
+
+def stiffness_jumps(orbit: Orbit) -> np.ndarray:
+    """Return the events at which C(t) jumps."""
+    events = orbit.passage.events
+    events = events[events[:, KIND] == SWITCH]
+    stiffness = segments_of(orbit.problem)[:, 1]
+    number = events[:, SEGMENT].astype(int)
+    return events[stiffness[number] != stiffness[number - 1]]

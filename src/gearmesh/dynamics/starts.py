@@ -1,0 +1,60 @@
+"""States from which orbits are searched."""
+
+from collections.abc import Iterator
+from dataclasses import replace
+from itertools import product
+
+import numpy as np
+from scipy.linalg import expm
+
+from gearmesh.model.problem import Problem, State
+from gearmesh.solvers.reduced.period_map import segments_of
+from gearmesh.solvers.simulation import simulate
+
+_TRANSIENT = 40
+"""Revolutions after which the end of a run serves as a start."""
+
+_HEIGHTS = (0.0, 1.0, 2.0, 3.0)
+_VELOCITIES = (-2.0, -0.7, 0.7, 2.0)
+
+
+def starts(problem: Problem) -> Iterator[np.ndarray]:
+    """Yield states (y, y', b, b') near which orbits may lie, the most likely first.
+
+    They are the periodic motion in contact without damping of the mesh, the end of a long run
+    from rest, the ends of long runs from a grid of y and v, and the grid itself.
+    """
+    yield linear_orbit(problem)
+    long = replace(problem, revolutions=_TRANSIENT, kept_revolutions=0, initial_state=None)
+    rest = -2.0 / problem.bearing_stiffness
+    grid = [State(y, v, rest, 0.0) for y, v in product(_HEIGHTS, _VELOCITIES)]
+    runs = [long, *(replace(long, initial_state=state) for state in grid)]
+    for response in simulate(runs, estimate_errors=False):
+        if response.final_state is not None:
+            yield coordinates(response.final_state)
+    yield from map(coordinates, grid)
+
+
+def coordinates(state: State) -> np.ndarray:
+    """Return y, y', b, b' of a state."""
+    return np.array([state.y, state.v, state.b, state.b_rate])
+
+
+def linear_orbit(problem: Problem) -> np.ndarray:
+    """Return the state (y, y', b, b') of the periodic motion that never loses contact.
+
+    The material's linear damping acts; the equations are linear then, and a matrix exponential
+    for each segment of the mesh period solves them.
+    """
+    two_mu = 2.0 / problem.body_mass
+    support = problem.bearing_stiffness / problem.body_mass
+    damped = 2.0 * problem.bearing_damping_ratio * np.sqrt(support)
+    whole = np.eye(5)
+    for length, c, g in segments_of(problem):
+        mesh = np.array([c, problem.material[0], 0.0, 0.0, 0.0])  # N of (y, y', b, b', 1)
+        rates = np.zeros((5, 5))
+        rates[0, 1] = rates[2, 3] = 1.0
+        rates[3] = -two_mu * mesh - np.array([0.0, 0.0, support, damped, 0.0])
+        rates[1] = rates[3] - mesh + np.array([g * c, 0.0, 0.0, 0.0, 1.0])
+        whole = expm(rates * length) @ whole
+    return np.linalg.solve(np.eye(4) - whole[:4, :4], whole[:4, 4])

@@ -1,0 +1,183 @@
+"""Walks along a curve of orbits, in both directions, and why they end."""
+
+from dataclasses import dataclass, replace
+from typing import NamedTuple
+
+import numpy as np
+from scipy.optimize import brentq
+
+from gearmesh.dynamics.continuation import Curve, Point, at_phase, clear_phase
+from gearmesh.dynamics.special_points import flip_test
+from gearmesh.errors import NoOrbit
+from gearmesh.solvers.reduced.period_map import passage
+
+Limits = tuple[tuple[float, float], ...]
+"""Range of each parameter."""
+
+LONGEST_STEP = 0.03
+"""Longest step along a branch, in y_st and shares of the range of the parameter.
+
+It grows in proportion to motions of more than `_LARGE`.
+"""
+
+FARTHEST = 100.0
+"""Size of y, in y_st, at which a branch is not followed further."""
+
+MOST_POINTS = 4000
+"""Points after which a branch is given up."""
+
+LIMIT, CLOSED, HALVED, FAR = "limit", "closed", "half the period", "far"
+"""Ends of a branch: at a limit of the parameter, at its own start, at a flip of an orbit of half
+the period, where the orbits of the branch come again one half of their period later, and at
+motions larger than `FARTHEST`."""
+
+_FIRST_STEP = 0.25  # of the longest
+_GROWTH = 1.4
+_LARGE = 5.0
+_AT_LIMIT = 1e-9  # share of the range of the parameter
+_SAME = 1e-7  # distance between two states that are the same
+_REACH = 0.3  # length of the branch of half the period on which its flip is looked for
+
+
+@dataclass(frozen=True)
+class Piece:
+    """A piece of a branch with its states taken at one phase.
+
+    The last point of a piece is the first of the next.
+    """
+
+    curve: Curve
+    points: list[Point]
+
+    def reversed(self) -> "Piece":
+        """Return the same piece, passed in the other direction."""
+        return Piece(self.curve, [point.reversed() for point in reversed(self.points)])
+
+
+class Walk(NamedTuple):
+    """A walk along a branch in one direction.
+
+    Attributes
+    ----------
+    pieces : list of Piece
+    reason : str
+        Why it ends.
+    flip : list of (str, Point)
+        The flip of the orbit of half the period where it ends, if it ends there.
+    """
+
+    pieces: list[Piece]
+    reason: str
+    flip: list[tuple[str, Point]]
+
+
+def walk(curve: Curve, start: Point, limits: Limits, longest: float) -> tuple[Walk, Walk]:
+    """Walk from `start` against and along its tangent; of a closed curve both walks are one."""
+    ahead = _walk(Piece(curve, [start]), limits, longest)
+    if ahead.reason == CLOSED:
+        return ahead, ahead
+    return _walk(Piece(curve, [start.reversed()]), limits, longest), ahead
+
+
+def joined(back: Walk, ahead: Walk) -> list[Piece]:
+    """Return the pieces of both walks in the direction of the second."""
+    if back is ahead:
+        return ahead.pieces
+    return [piece.reversed() for piece in reversed(back.pieces)] + ahead.pieces
+
+
+def points_of(pieces: list[Piece]) -> list[Point]:
+    """Return all points of successive pieces, each once."""
+    return pieces[0].points[:1] + [point for piece in pieces for point in piece.points[1:]]
+
+
+def _walk(piece: Piece, limits: Limits, longest: float) -> Walk:
+    """Follow the branch from the only point of `piece` on."""
+    start, pieces = piece.points[0], [piece]
+    length = _FIRST_STEP * longest
+    for _ in range(MOST_POINTS):
+        curve, point = pieces[-1].curve, pieces[-1].points[-1]
+        try:
+            phase = clear_phase(point.orbit)
+            if phase != curve.phase:
+                curve, point = curve.moved_to(phase, point)
+                pieces.append(Piece(curve, [point]))
+            following, length = curve.step_on(point, length)
+        except NoOrbit as error:
+            flip = _flip_at_end(curve, point)
+            return Walk(pieces, HALVED if flip else f"the branch ends: {error}", flip)
+        if (
+            curve.periods % 2 == 0
+            and not curve.condition
+            and _half_way(point) @ _half_way(following) < 0.0
+        ):
+            return Walk(pieces, HALVED, _flip_at_end(curve, point))
+        for i, (low, high) in enumerate(limits):
+            if not low <= following.values[i] <= high:
+                edge = low if following.values[i] < low else high
+                if abs(edge - point.values[i]) > _AT_LIMIT * curve.units[i]:
+                    pieces[-1].points.append(_between(curve, point, following, edge, i))
+                return Walk(pieces, LIMIT, [])
+        pieces[-1].points.append(following)
+        if _is_back(curve, point, following, start):
+            return Walk(pieces, CLOSED, [])
+        size = max(following.orbit.y_max, -following.orbit.y_min)
+        if size > FARTHEST:
+            return Walk(pieces, FAR, [])
+        length = min(_GROWTH * length, longest * max(1.0, size / _LARGE))
+    return Walk(pieces, "too many points", [])
+
+
+def _halves(curve: Curve) -> bool:
+    """Return whether the curve may end at orbits of half the period."""
+    return curve.periods % 2 == 0 and curve.condition is None
+
+
+def _half_way(point: Point) -> np.ndarray:
+    """Return how far an orbit is from its start after half of its period."""
+    orbit = point.orbit
+    return passage(orbit.problem, orbit.state, orbit.periods // 2).end - orbit.state
+
+
+def _flip_at_end(curve: Curve, point: Point) -> list[tuple[str, Point]]:
+    """Return the flip of an orbit of half the period near a point, if there is one."""
+    if not _halves(curve):
+        return []
+    half = replace(curve, periods=curve.periods // 2)
+    middle = point.orbit.state + 0.5 * _half_way(point)
+    try:
+        near = half.at(replace(point.orbit, state=middle), point.values)
+        test = flip_test(near.orbit)
+        for length in _REACH * np.array([0.01, -0.01, 0.1, -0.1, 1.0, -1.0]):
+            if flip_test(half.step(near, length).orbit) * test <= 0.0:
+                at = brentq(lambda s: flip_test(half.step(near, s).orbit), 0.0, length, xtol=1e-13)
+                return [("flip", half.step(near, at))]
+    except NoOrbit:
+        pass
+    return []
+
+
+def _between(curve: Curve, point: Point, following: Point, value: float, i: int = 0) -> Point:
+    """Return the point between two others at a value of parameter `i`."""
+    share = (value - point.values[i]) / (following.values[i] - point.values[i])
+    place = point.place + share * (following.place - point.place)
+    place[4 + i] = value / curve.units[i]
+    return curve.point(place, np.eye(len(place))[4 + i], following.tangent)
+
+
+def _is_back(curve: Curve, point: Point, following: Point, start: Point) -> bool:
+    """Return whether a closed branch passes its start between two points."""
+    rises = following.tangent[4] * start.tangent[4] > 0.0
+    if (
+        point is start
+        or not rises
+        or (point.values[0] < start.values[0]) == (following.values[0] < start.values[0])
+    ):
+        return False
+    here = _between(curve, point, following, start.values[0]).orbit
+    state = at_phase(here, start.orbit.problem.initial_phase).state
+    for _ in range(curve.periods):
+        if np.abs(state - start.orbit.state).max() < _SAME:
+            return True
+        state = passage(start.orbit.problem, state).end
+    return False

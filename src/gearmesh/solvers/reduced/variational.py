@@ -1,0 +1,395 @@
+"""The reduced equations of motion with their variational equations, from event to event.
+
+The equations are those of `gearmesh.solvers.reduced.taylor`, with y = u + b, v = y' and
+
+    y'' = 1 + g E - (1 + 2 mu) N - 2 zeta w b' - w^2 b,    b'' = -2 mu N - 2 zeta w b' - w^2 b.
+
+A deviation (dy, dv, db, db') of the state obeys the linear equations in which c dy stands for E
+and c dy + D dv for N, with D = k_1 + 2 k_2 |v| + 3 k_3 v^2. The Taylor series of the motion and of
+the deviations in the four directions of the state are computed together, so the Jacobian of the
+flow is as accurate as the flow. Contact events change the vector field, and with it the
+deviations (`saltation`); jumps of C(t) and gamma(t) happen at fixed times and do not.
+"""
+
+import numpy as np
+
+from gearmesh.model.contact import CONTACT_LOSS, INVERSE_MESH, NORMAL_MESH
+from gearmesh.solvers.compilation import inner
+
+ORDER = 20
+"""Degree of the Taylor polynomials."""
+
+SIZE = 4
+"""Size of the state (y, v, b, b')."""
+
+TURN, CROSSING, SWITCH = range(3)
+"""Kinds of events: an extremum of y, a change of regime, a jump of C(t) or gamma(t)."""
+
+TIME, KIND, HEIGHT, VELOCITY, BEFORE, AFTER, REGIME, SEGMENT, EVENT_SIZE = range(9)
+"""Columns of a recorded event: its time, its kind, y, v, y'' before and after it, the regime
+and the segment of the mesh period after it."""
+
+COMPLETE, TOO_MANY_STEPS, TOO_MANY_EVENTS, DIVERGED = range(4)
+"""Outcomes of `propagate`."""
+
+_REST = 1e-14  # velocities and accelerations below this are rounding errors of a body at rest
+_NARROWEST = 1e-8  # share of a step in which two roots are not told apart
+_SAMPLE_EDGE = 1e-9  # share of the sampling interval
+_MOST_STEPS_PER_SEGMENT = 1000
+_FARTHEST = 1e9
+_FORCE_PLACES = 8
+
+
+@inner
+def saltation(before, after, gradient):
+    """Return the saltation matrix of an event at a fixed place in state space.
+
+    Parameters
+    ----------
+    before, after : ndarray, shape (n,)
+        Vector field before and after the event.
+    gradient : ndarray, shape (n,)
+        Gradient of the event function, whose rate along `before` is not 0.
+    """
+    rate = np.sum(gradient * before)
+    n = before.size
+    matrix = np.eye(n)
+    for i in range(n):
+        for j in range(n):
+            matrix[i, j] += (after[i] - before[i]) * gradient[j] / rate
+    return matrix
+
+
+@inner
+def vector_field(state, direction, c, offset, g, law, bearings):
+    """Return the rates of (y, v, b, b') with the branches of the laws that are given.
+
+    Parameters
+    ----------
+    state : ndarray, shape (4,)
+    direction : float
+        Sign of v.
+    c, offset, g : float
+        Stiffness (0 in contact loss), level y_0, friction's share of the elastic force.
+    law : ndarray, shape (3,)
+        k_1, k_2, k_3.
+    bearings : ndarray, shape (3,)
+        2 mu, w^2, 2 zeta w.
+    """
+    v = state[1]
+    elastic = c * (state[0] - offset)
+    normal = elastic + (law[0] + (law[1] * direction + law[2] * v) * v) * v
+    bearing = -bearings[1] * state[2] - bearings[2] * state[3]
+    rates = np.empty(SIZE)
+    rates[0] = v
+    rates[1] = 1.0 + g * elastic - (1.0 + bearings[0]) * normal + bearing
+    rates[2] = state[3]
+    rates[3] = bearing - bearings[0] * normal
+    return rates
+
+
+@inner
+def _expand(series, slope, square, direction, c, offset, g, law, bearings):
+    """Write the series of the motion (column 0) and of its deviations (columns 1 to 4).
+
+    `series` has shape (5, 4, ORDER + 1), its coefficients of degree 0 are given. `slope` receives
+    the series of D.
+    """
+    two_mu, support, damped = bearings[0], bearings[1], bearings[2]
+    share = 1.0 + two_mu
+    v = series[0, 1]
+    for k in range(ORDER):
+        part = 1.0 / (k + 1.0)
+        total = 0.0
+        for i in range(k + 1):
+            total += v[i] * v[k - i]
+        square[k] = total
+        cube = 0.0
+        if law[2] != 0.0:
+            for i in range(k + 1):
+                cube += square[i] * v[k - i]
+        slope[k] = 2.0 * law[1] * direction * v[k] + 3.0 * law[2] * total
+        if k == 0:
+            slope[0] += law[0]
+        for column in range(SIZE + 1):
+            motion = series[column]
+            if column == 0:
+                height = motion[0, k] - offset if k == 0 else motion[0, k]
+                damping = law[0] * v[k] + law[1] * direction * total + law[2] * cube
+            else:
+                height = motion[0, k]
+                damping = 0.0
+                for i in range(k + 1):
+                    damping += slope[i] * motion[1, k - i]
+            elastic = c * height
+            normal = elastic + damping
+            bearing = -support * motion[2, k] - damped * motion[3, k]
+            push = 1.0 if column == 0 and k == 0 else 0.0
+            motion[0, k + 1] = part * motion[1, k]
+            motion[1, k + 1] = part * (push + g * elastic - share * normal + bearing)
+            motion[2, k + 1] = part * motion[3, k]
+            motion[3, k + 1] = part * (bearing - two_mu * normal)
+    slope[ORDER] = 0.0
+
+
+@inner
+def _step(series, tolerance, longest):
+    """Return the step at which the last terms of all series reach the tolerance."""
+    step = longest
+    for column in range(SIZE + 1):
+        size = 1.0
+        for row in range(SIZE):
+            size = max(size, abs(series[column, row, 0]))
+        for k in range(ORDER - 2, ORDER + 1):
+            last = 0.0
+            for row in range(SIZE):
+                last = max(last, abs(series[column, row, k]))
+            if last > 0.0:
+                step = min(step, (tolerance * size / last) ** (1.0 / k))
+    return step
+
+
+@inner
+def value_and_slope(polynomial, s):
+    """Return a polynomial, lowest coefficient first, and its slope at `s`."""
+    value, slope = 0.0, 0.0
+    for k in range(polynomial.size - 1, -1, -1):
+        slope = slope * s + value
+        value = value * s + polynomial[k]
+    return value, slope
+
+
+@inner
+def root_between(polynomial, low, high):
+    """Return the root of a polynomial that is monotone between `low` and `high`."""
+    falling = value_and_slope(polynomial, low)[0] > value_and_slope(polynomial, high)[0]
+    s = 0.5 * (low + high)
+    for _ in range(80):
+        value, slope = value_and_slope(polynomial, s)
+        if value == 0.0:
+            break
+        if (value > 0.0) == falling:
+            low = s
+        else:
+            high = s
+        following = s - value / slope if slope != 0.0 else low
+        if not low < following < high:
+            following = 0.5 * (low + high)
+        if abs(following - s) <= 1e-16 * high:
+            s = following
+            break
+        s = following
+    return s
+
+
+@inner
+def first_root(polynomial, end):
+    """Return the first change of sign of a polynomial in (0; end), or infinity.
+
+    A bound of the second derivative proves that a piece of the interval holds no root, or one at
+    most; other pieces are halved. A root at 0 itself does not count.
+    """
+    first = 0
+    while first < polynomial.size - 1 and polynomial[first] == 0.0:
+        first += 1
+    f = polynomial[first:]
+    bend = 0.0
+    for k in range(f.size - 1, 1, -1):
+        bend = bend * end + k * (k - 1.0) * abs(f[k])
+    low, width = 0.0, end
+    while low < end:
+        width = min(width, end - low)
+        half = 0.5 * width
+        value, slope = value_and_slope(f, low + half)
+        curved = bend * half
+        if abs(value) <= (abs(slope) + 0.5 * curved) * half:
+            if abs(slope) > curved:
+                before, after = value_and_slope(f, low)[0], value_and_slope(f, low + width)[0]
+                if (before > 0.0) != (after > 0.0):
+                    return root_between(f, low, low + width)
+            elif width > _NARROWEST * end:
+                width = half
+                continue
+        low += width
+        width *= 2.0
+    return np.inf
+
+
+@inner
+def _touching(regime, backlash, c):
+    """Return the stiffness that acts in a regime, and the level where its flanks touch."""
+    if regime == CONTACT_LOSS:
+        return 0.0, 0.0
+    return c, -backlash if regime == INVERSE_MESH else 0.0
+
+
+@inner
+def _direction(state, rates):
+    """Return the sign of v, or where v is 0 that of v'."""
+    leading = state[1] if state[1] != 0.0 else rates[1]
+    return -1.0 if leading < 0.0 else 1.0
+
+
+@inner
+def _level_ahead(regime, direction, backlash):
+    """Return the level at which motion in this direction leaves the regime."""
+    if regime == NORMAL_MESH:
+        return 0.0 if direction < 0.0 else np.inf
+    if regime == CONTACT_LOSS:
+        return -backlash if direction < 0.0 else 0.0
+    return -backlash if direction > 0.0 else -np.inf
+
+
+@inner
+def propagate(
+    segments,
+    laws,
+    backlash,
+    bearings,
+    visits,
+    longest,
+    tolerance,
+    state,
+    jacobian,
+    events,
+    samples,
+    per_period,
+):
+    """Move `state` and its `jacobian` over the segments of the mesh period, in place.
+
+    Parameters
+    ----------
+    segments : ndarray, shape (m, 3)
+        Length in tau_s, C/C_s and g of each segment of the mesh period.
+    laws : ndarray, shape (2, 3)
+        k_1, k_2, k_3 in contact loss and where flanks touch.
+    backlash : float
+    bearings : ndarray, shape (3,)
+        2 mu, w^2, 2 zeta w.
+    visits : int
+        Segments to pass; after the last segment of the period follows its first.
+    longest, tolerance : float
+        Bounds of a step and of its relative error.
+    state : ndarray, shape (4,)
+        y, v, b, b'.
+    jacobian : ndarray, shape (4, 4)
+    events : ndarray, shape (room, EVENT_SIZE)
+    samples : ndarray, shape (n, 4)
+        Receives y, v, y'' and the regime at `per_period` times in a mesh period.
+
+    Returns
+    -------
+    outcome, n_events : int
+    damping : float
+        Integral of D over the time.
+    least_force : float
+        Least force between flanks that touch; infinity if none do.
+    """
+    series = np.empty((SIZE + 1, SIZE, ORDER + 1))
+    slope, square = np.zeros(ORDER + 1), np.zeros(ORDER + 1)
+    front = np.zeros(SIZE)
+    front[0] = 1.0
+    regime = CONTACT_LOSS
+    if state[0] > 0.0 or (state[0] == 0.0 and state[1] >= 0.0):
+        regime = NORMAL_MESH
+    elif state[0] < -backlash or (state[0] == -backlash and state[1] <= 0.0):
+        regime = INVERSE_MESH
+    n_events, n_samples, steps = 0, 0, 0
+    damping, least_force, begun = 0.0, np.inf, 0.0
+    spacing = np.inf
+    if per_period > 0:
+        spacing = np.sum(segments[:, 0]) / per_period
+    for visit in range(visits):
+        number = visit % len(segments)
+        length, g = segments[number, 0], segments[number, 2]
+        c, offset = _touching(regime, backlash, segments[number, 1])
+        law = laws[abs(regime)]
+        previous = segments[(number - 1) % len(segments)]
+        if previous[1] != segments[number, 1] or previous[2] != g:
+            if n_events == len(events):
+                return TOO_MANY_EVENTS, n_events, damping, least_force
+            old, _ = _touching(regime, backlash, previous[1])
+            sign = np.sign(state[1])
+            before = vector_field(state, sign, old, offset, previous[2], law, bearings)
+            after = vector_field(state, sign, c, offset, g, law, bearings)
+            event = events[n_events]
+            event[TIME], event[KIND], event[HEIGHT] = begun, SWITCH, state[0]
+            event[VELOCITY], event[BEFORE], event[AFTER] = state[1], before[1], after[1]
+            event[REGIME], event[SEGMENT] = regime, number
+            n_events += 1
+        since = 0.0
+        while since < length:
+            steps += 1
+            if steps > visits * _MOST_STEPS_PER_SEGMENT:
+                return TOO_MANY_STEPS, n_events, damping, least_force
+            if not abs(state[0]) + abs(state[2]) < _FARTHEST:
+                return DIVERGED, n_events, damping, least_force
+            rates = vector_field(state, np.sign(state[1]), c, offset, g, law, bearings)
+            direction = _direction(state, rates)
+            at_rest = abs(state[1]) <= _REST and abs(rates[1]) <= _REST
+            for row in range(SIZE):
+                series[0, row, 0] = state[row]
+                for column in range(SIZE):
+                    series[column + 1, row, 0] = jacobian[row, column]
+            _expand(series, slope, square, direction, c, offset, g, law, bearings)
+            step = min(_step(series, tolerance, longest), length - since)
+            kind = -1
+            # Up to the first extremum y is monotone, so its value there shows whether it has
+            # passed the level ahead.
+            turn = np.inf if at_rest else first_root(series[0, 1], step)
+            if turn < step:
+                step, kind = turn, TURN
+            level = _level_ahead(regime, direction, backlash)
+            if not at_rest and direction * (value_and_slope(series[0, 0], step)[0] - level) > 0.0:
+                series[0, 0, 0] -= level
+                step, kind = root_between(series[0, 0], 0.0, step), CROSSING
+                series[0, 0, 0] += level
+            while n_samples < len(samples):
+                s = n_samples * spacing - begun - since
+                if s >= step - _SAMPLE_EDGE * spacing:
+                    break
+                s = max(s, 0.0)
+                samples[n_samples, 0] = value_and_slope(series[0, 0], s)[0]
+                velocity, acceleration = value_and_slope(series[0, 1], s)
+                samples[n_samples, 1], samples[n_samples, 2] = velocity, acceleration
+                samples[n_samples, 3] = regime
+                n_samples += 1
+            if regime != CONTACT_LOSS:
+                for place in range(_FORCE_PLACES + 1):
+                    s = step * place / _FORCE_PLACES
+                    y = value_and_slope(series[0, 0], s)[0]
+                    v = value_and_slope(series[0, 1], s)[0]
+                    damper = (law[0] + (law[1] * direction + law[2] * v) * v) * v
+                    least_force = min(least_force, regime * (c * (y - offset) + damper))
+            total = 0.0
+            for k in range(ORDER, -1, -1):
+                total = total * step + slope[k] / (k + 1.0)
+            damping += total * step
+            for row in range(SIZE):
+                state[row] = value_and_slope(series[0, row], step)[0]
+                for column in range(SIZE):
+                    jacobian[row, column] = value_and_slope(series[column + 1, row], step)[0]
+            since = length if kind == -1 and step == length - since else since + step
+            if kind == -1:
+                continue
+            if n_events == len(events):
+                return TOO_MANY_EVENTS, n_events, damping, least_force
+            if kind == TURN:
+                state[1] = 0.0
+            else:
+                state[0] = level
+            before = vector_field(state, direction, c, offset, g, law, bearings)
+            if kind == CROSSING:
+                regime += 1 if direction > 0.0 else -1
+                c, offset = _touching(regime, backlash, segments[number, 1])
+                law = laws[abs(regime)]
+            after = vector_field(state, direction, c, offset, g, law, bearings)
+            if kind == CROSSING and state[1] != 0.0:
+                jacobian[:, :] = saltation(before, after, front) @ jacobian
+            event = events[n_events]
+            event[TIME], event[KIND], event[HEIGHT] = begun + since, kind, state[0]
+            event[VELOCITY], event[BEFORE], event[AFTER] = state[1], before[1], after[1]
+            event[REGIME], event[SEGMENT] = regime, number
+            n_events += 1
+        begun += length
+    return COMPLETE, n_events, damping, least_force
