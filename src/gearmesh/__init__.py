@@ -11,35 +11,60 @@ from importlib import import_module
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from gearmesh.errors import InputError as InputError
-    from gearmesh.interface.runs import simulate as simulate
-    from gearmesh.interface.runs import sweep as sweep
-    from gearmesh.interface.statements import paper as paper
-    from gearmesh.study.loading import load_study as load
-    from gearmesh.study.pair import Pair as Pair
+    from gearmesh.errors import InputError, NoOrbit
+    from gearmesh.interface.orbits import (
+        Branch,
+        Orbit,
+        SpecialCurve,
+        SpecialPoint,
+        find_orbit,
+        follow,
+        follow_special,
+    )
+    from gearmesh.interface.runs import simulate, sweep
+    from gearmesh.interface.statements import paper
+    from gearmesh.study.loading import load
+    from gearmesh.study.pair import Pair
 
 __version__ = "0.2.0"
 
-_PUBLIC = {
-    "InputError": ("gearmesh.errors", "InputError"),
-    "Pair": ("gearmesh.study.pair", "Pair"),
-    "load": ("gearmesh.study.loading", "load_study"),
-    "paper": ("gearmesh.interface.statements", "paper"),
-    "simulate": ("gearmesh.interface.runs", "simulate"),
-    "sweep": ("gearmesh.interface.runs", "sweep"),
-}
+__all__ = [
+    "Branch",
+    "InputError",
+    "NoOrbit",
+    "Orbit",
+    "Pair",
+    "SpecialCurve",
+    "SpecialPoint",
+    "find_orbit",
+    "follow",
+    "follow_special",
+    "load",
+    "paper",
+    "simulate",
+    "sweep",
+]
 
-__all__ = ["InputError", "Pair", "load", "paper", "simulate", "sweep"]
+_MODULES = {
+    "gearmesh.errors": ("InputError", "NoOrbit"),
+    "gearmesh.interface.orbits": (
+        *("Branch", "Orbit", "SpecialCurve", "SpecialPoint"),
+        *("find_orbit", "follow", "follow_special"),
+    ),
+    "gearmesh.interface.runs": ("simulate", "sweep"),
+    "gearmesh.interface.statements": ("paper",),
+    "gearmesh.study.loading": ("load",),
+    "gearmesh.study.pair": ("Pair",),
+}
 
 
 def __getattr__(name: str) -> object:
-    if name not in _PUBLIC:
-        raise AttributeError(f"module 'gearmesh' has no attribute {name!r}")
-    module, attribute = _PUBLIC[name]
-    value = getattr(import_module(module), attribute)
-    globals()[name] = value
-    return value
+    for module, names in _MODULES.items():
+        if name in names:
+            value = globals()[name] = getattr(import_module(module), name)
+            return value
+    raise AttributeError(f"module 'gearmesh' has no attribute {name!r}")
 
 
 def __dir__() -> list[str]:
-    return sorted({*globals(), *_PUBLIC})
+    return sorted({*globals(), *__all__})

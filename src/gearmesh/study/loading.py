@@ -184,3 +184,24 @@ def _why_no_parameter(key: str) -> str:
     if key.partition(".")[0] in (*Plan.model_fields, "name", "base"):
         return "not a parameter; the file of a study states it"
     return f"no such parameter{_hint(key, Pair.model_fields)}"
+
+
+def load(path: str | Path) -> Study:
+    """Read a study from YAML.
+
+    Parameters
+    ----------
+    path : str or Path
+        Its file, such as ``"config/paper.yaml"``.
+
+    Returns
+    -------
+    Study
+        With `pair`, `variants`, `nu`, `cases` and more.
+
+    Raises
+    ------
+    InputError
+        With one line: file, key, what was found, what is allowed.
+    """
+    return load_study(path)
