@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from gearmesh.dynamics import branches, orbits, special_curves
+from gearmesh.dynamics import branches, orbits, special_curves, special_points
 from gearmesh.dynamics.continuation import Family
 from gearmesh.errors import InputError
 from gearmesh.interface.statements import (
@@ -107,7 +107,8 @@ class Orbit:
         time = course.time / self.pair.natural_frequency
         dataset = dataset.assign_coords(time=("time", time, {"units": "s", "long_name": "time"}))
         regimes = " ".join(_REGIMES[flag] for flag in (1, 0, -1))
-        stated = {"units": "1", "long_name": "regime of the mesh", "flag_meanings": regimes}
+        stated: dict[str, Any] = {"units": "1", "long_name": "regime of the mesh"}
+        stated["flag_meanings"] = regimes
         stated["flag_values"] = np.array([1, 0, -1], np.int8)
         dataset["regime"] = ("time", course.regime, stated)
         for name, value, what in (
@@ -331,7 +332,7 @@ class SpecialCurve:
     def to_dataset(self) -> xr.Dataset:
         """Return the curve over ``point``: both parameters, and `y_max` and `y_min` there."""
         pair = self.point.orbit.pair
-        heights = {
+        heights: dict[str, tuple[tuple[str, ...], Any, str]] = {
             name: (("point",), [getattr(orbit, name) for orbit in self.found.orbits], what)
             for name, what in (("y_max", "maximum of y"), ("y_min", "minimum of y"))
         }
@@ -367,12 +368,12 @@ def follow_special(
     first, second = (
         _limits(orbit.pair, name, ends) for name, ends in zip(parameters, limits, strict=True)
     )
-    bare = special_curves.SpecialPoint(point.kind, point.nu, point.parameters, orbit.found)
+    bare = special_points.SpecialPoint(point.kind, point.nu, point.parameters, orbit.found)
     found = special_curves.follow_special(bare, parameters, (first, second), family, values)
     return SpecialCurve(point, found)
 
 
-def _special(point: special_curves.SpecialPoint, orbit: Orbit) -> SpecialPoint:
+def _special(point: special_points.SpecialPoint, orbit: Orbit) -> SpecialPoint:
     """Return a special point with the pair that it belongs to."""
     pair = orbit.pair
     for name, value in point.parameters.items():
