@@ -4,27 +4,26 @@ The functions take floats and arrays alike, and compile with numba, so that ever
 as they stand here.
 """
 
-from typing import TypeVar
-
-import numpy as np
+from typing import Any
 
 NORMAL_MESH, CONTACT_LOSS, INVERSE_MESH = 1, 0, -1
 """Regimes of the mesh: y >= 0, -s < y < 0 and y <= -s."""
 
-Number = TypeVar("Number", float, np.ndarray)
+Number = Any
+"""A float or an array."""
 
 
-def regime_of(y: Number, backlash: float) -> Number:
+def regime_of(y: Number, backlash: Number) -> Number:
     """Return the regime at the relative motion `y`, with the signs of H1 and H2 in eq. (1)."""
     return 1 * (y >= 0.0) - 1 * (y <= -backlash)
 
 
-def touching_level(regime: Number, backlash: float) -> Number:
+def touching_level(regime: Number, backlash: Number) -> Number:
     """Return the y at which the flanks of a regime begin to touch: 0, or -s in inverse mesh."""
     return -backlash * (regime == INVERSE_MESH)
 
 
-def elastic_force(y: Number, c: Number, regime: Number, backlash: float) -> Number:
+def elastic_force(y: Number, c: Number, regime: Number, backlash: Number) -> Number:
     """Return C (y H1 + (y + s) H2), in the unit of `c` times `y`."""
     return c * (y - touching_level(regime, backlash)) * (regime != CONTACT_LOSS)
 

@@ -14,33 +14,25 @@ class Segment(NamedTuple):
 
     Attributes
     ----------
-    start, end : float
-        Its ends within the period, 0 to 1.
+    start, end, length : float
+        Its ends within the period, 0 to 1, and its length.
     middle : float
         Mesh phase of its middle, counted from t = 0.
     pairs : tuple of Pair
         gamma and sigma of the pairs of teeth in contact, at its middle.
+    double : bool
+        Whether these are two pairs.
+    gamma : float
+        gamma(t) of eq. (6), summed over the pairs.
     """
 
     start: float
     end: float
+    length: float
     middle: float
     pairs: tuple[Pair, ...]
-
-    @property
-    def length(self) -> float:
-        """Length in mesh periods."""
-        return self.end - self.start
-
-    @property
-    def double(self) -> bool:
-        """Whether two pairs of teeth are in contact."""
-        return len(self.pairs) == 2
-
-    @property
-    def gamma(self) -> float:
-        """gamma(t) of eq. (6), summed over the pairs."""
-        return sum(pair.gamma for pair in self.pairs)
+    double: bool
+    gamma: float
 
 
 def segments(problem: Problem) -> tuple[Segment, ...]:
@@ -64,5 +56,7 @@ def _cut(
         if start < end:
             middle = (0.5 * (start + end) + initial_phase) % 1.0
             pairs = tuple(pairs_in_contact(middle, contact_ratio))
-            found.append(Segment(start, end, middle, pairs))
+            gamma = sum(pair.gamma for pair in pairs)
+            double = len(pairs) == 2
+            found.append(Segment(start, end, end - start, middle, pairs, double, gamma))
     return tuple(found)

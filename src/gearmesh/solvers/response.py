@@ -160,7 +160,7 @@ def assemble(
     final_state: State,
     companion: Companion | None,
     tolerance: float,
-    samples: Samples | None,
+    samples: Any,
     rotation_drift: float = np.nan,
 ) -> Response:
     """Return the response that a compiled solver has measured.
@@ -199,9 +199,9 @@ def assemble(
 def _measure(
     response: Response,
     problem: Problem,
-    summary: Mapping[str, float],
+    summary: Mapping[str, Any],
     extrema: np.ndarray,
-    samples: Samples | None,
+    samples: Any,
 ) -> None:
     """Write what is measured on the kept revolutions."""
     duration = problem.kept_periods * problem.period

@@ -31,9 +31,9 @@ _EXTREMA_PER_PERIOD = 64
 _MOST_TURNS = 10_000
 
 
-def _build_run(key: str, cache: bool) -> Callable:
+def _build_run(key: str, cache: bool) -> Callable[..., bool]:
     @njit(cache=cache, nogil=True)
-    def compiled(*arguments):
+    def compiled(*arguments):  # type: ignore[no-untyped-def]
         key  # noqa: B018 (see persistent)
         return kernel.run(*arguments)
 
@@ -111,6 +111,7 @@ class _Run:
             _waves(problem),
             np.array(problem.deviation, float).reshape(-1, 2),
         )
+        self.extrema = np.zeros(0, EXTREMUM)
         self.start = np.concatenate(start(problem))
         self.start[ROTATION_3] += displacement
         self._integrate(samples_per_period, _EXTREMA_PER_PERIOD * problem.kept_periods)
@@ -153,7 +154,12 @@ class _Run:
             measured=problem.kept_revolutions > 0,
             signs=(float(mode["run_out_sign"]), float(mode["slip_sign"])),
             level=float(mode["level"]),
-            exact=tuple(bool(mode[name]) for name in _EXACT),
+            exact=(
+                bool(mode["turns"]),
+                bool(mode["on_level"]),
+                bool(mode["on_bracket"]),
+                bool(mode["released"]),
+            ),
         )
         periods = problem.start_period + problem.periods
         return State(y, v, b, b_rate, tuple(self.state.tolist()), periods, branches)
@@ -163,9 +169,6 @@ class _Run:
         """What (phi_3 - phi_2)/2 has gained, in rad."""
         gained = self.state - self.start
         return 0.5 * float(gained[ROTATION_3] - gained[ROTATION_2]) / self.problem.base_radius
-
-
-_EXACT = ("turns", "on_level", "on_bracket", "released")
 
 
 def _mode(problem: Problem) -> np.ndarray:
@@ -178,8 +181,7 @@ def _mode(problem: Problem) -> np.ndarray:
         mode["regime"], mode["direction"] = branches.regime, branches.direction
         mode["run_out_sign"], mode["slip_sign"] = branches.signs
         mode["level"] = branches.level
-        for name, value in zip(_EXACT, branches.exact, strict=True):
-            mode[name] = value
+        mode["turns"], mode["on_level"], mode["on_bracket"], mode["released"] = branches.exact
     return mode
 
 
@@ -247,7 +249,7 @@ def _waves(problem: Problem) -> np.ndarray:
 
 
 def _samples(rows: np.ndarray) -> Samples:
-    columns = {name: rows[name].copy() for name in rows.dtype.names}
+    columns = {name: rows[name].copy() for name in SAMPLE.fields or ()}
     regime = columns["regime"].astype(np.int8)
     return Samples(
         time=columns["time"],

@@ -1,9 +1,10 @@
 """Runs of the reduced system: what the compiled sweep takes of a problem, and what it returns."""
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
-from functools import cached_property, lru_cache
+from functools import cached_property
+from typing import Any
 
 import numpy as np
 from numba import njit
@@ -28,20 +29,20 @@ _ON_EDGE = 1e-9
 _MOST_TURNS = 100_000
 
 
-def _build_vector_sweep(key: str, cache: bool) -> Callable:
+def _build_vector_sweep(key: str, cache: bool) -> Callable[..., bool]:
     @njit(cache=cache, nogil=True)
-    def compiled(work, *arguments):
+    def compiled(work, *arguments):  # type: ignore[no-untyped-def]
         key  # noqa: B018 (see persistent)
-        return sweep(zeros8(), pointer_to(work), *arguments)
+        return sweep(zeros8(), pointer_to(work), *arguments)  # type: ignore[call-arg]
 
     return compiled
 
 
-def _build_scalar_sweep(key: str, cache: bool) -> Callable:
+def _build_scalar_sweep(key: str, cache: bool) -> Callable[..., bool]:
     @njit(cache=cache, nogil=True)
-    def compiled(work, *arguments):
+    def compiled(work, *arguments):  # type: ignore[no-untyped-def]
         key  # noqa: B018 (see persistent)
-        return sweep(zeros1(), pointer_to(work), *arguments)
+        return sweep(zeros1(), pointer_to(work), *arguments)  # type: ignore[call-arg]
 
     return compiled
 
@@ -78,7 +79,9 @@ def integrate(
     sampled = n if samples_per_period else 0
     samples = np.empty((sampled, SAMPLED, kept * samples_per_period + WIDEST))
     _sweep(runs, summaries, strobes, extrema, samples, samples_per_period)
-    measured = [dict(zip(SUMMARY.names, values, strict=True)) for values in summaries.tolist()]
+    measured = [
+        dict(zip(SUMMARY.names or (), values, strict=True)) for values in summaries.tolist()
+    ]
     responses = []
     for i, problem in enumerate(problems):
         found, boundaries = measured[i], problem.periods + 1
@@ -174,7 +177,6 @@ def _start(problem: Problem) -> tuple[tuple[float, float, float, float], float, 
     return start, branches.regime, branches.direction if follows else 0.0
 
 
-@lru_cache
 def _sample_ends(parts: tuple[Segment, ...], per_period: int) -> list[int]:
     """Return the number of the first sample behind each segment; one at its end is behind it."""
     return [math.ceil(part.end * per_period - _ON_EDGE) for part in parts]
@@ -199,7 +201,7 @@ def _workspace() -> np.ndarray:
     return raw[first : first + N_ROWS * WIDEST]
 
 
-def _final_state(problem: Problem, summary: dict) -> State:
+def _final_state(problem: Problem, summary: Mapping[str, Any]) -> State:
     y, v, b, b_rate = summary["final"].tolist()
     branches = Branches(
         problem=problem if problem.initial_state is None else replace(problem, initial_state=None),
