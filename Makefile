@@ -1,32 +1,41 @@
-# Every target sets up what it needs; the environment is made again only when its lock changes.
+# Every target sets up what it needs. The environment is made again when it is no longer what was
+# made: when its lock, its folder or the chosen interpreter changed, or its interpreter is gone.
 # CORES=2 limits the cores that the pipeline uses, PYTHON=python3.12 chooses the interpreter.
 PYTHON ?= python3
 CORES ?=
+
+# Settings of the caller that would mix other packages or kernels into the environment.
+unexport PYTHONPATH PYTHONHOME PYTHONUSERBASE PIP_USER PIP_PREFIX PIP_TARGET PIP_ROOT JUPYTER_PATH
 
 BIN := .venv/bin
 STAMP := .venv/.installed
 BENCH_STAMP := .venv/.installed-bench
 DOCS_STAMP := .venv/.installed-docs
-PIP := $(BIN)/python -m pip install --quiet --disable-pip-version-check
+STALE := $(shell sh .ci/stale_environment $(if $(filter file,$(origin PYTHON)),,$(PYTHON)))
+PIP := $(BIN)/python -I -m pip install --quiet --disable-pip-version-check
 # Nothing without a hash is ever installed, so the few packages that come as sources are built
 # with the setuptools of the lock instead of one that pip would fetch for the purpose.
 LOCKED := $(PIP) --require-hashes --no-build-isolation
-SNAKEMAKE := $(BIN)/snakemake --profile workflow/profiles/default $(if $(CORES),--cores $(CORES))
+SNAKEMAKE := $(BIN)/python -I -m snakemake $(if $(CORES),--cores $(CORES))
 UV_COMPILE := uv pip compile --quiet --universal --python-version 3.11 --fork-strategy fewest \
 	--generate-hashes --no-annotate --no-header --no-emit-index-url
 
-.PHONY: help reproduce test bench lint docs identify lock clean
+.PHONY: help reproduce test test-fast bench lint docs identify lock clean always
 .DELETE_ON_ERROR:
 
 help: ## show this list
-	@sed -nE 's/^([a-z]+):.*## (.*)/make \1\t\2/p' $(MAKEFILE_LIST) | expand -t 18
+	@sed -nE 's/^([a-z-]+):.*## (.*)/make \1\t\2/p' $(MAKEFILE_LIST) | expand -t 18
 
 reproduce: $(STAMP) ## the paper: cases, datasets, figures, ledger and report
-	$(SNAKEMAKE)
-	@cat results/verdict.txt
+	@$(SNAKEMAKE); status=$$?; \
+	if [ -e results/paper/manifests/ledger.sha256 ]; then cat results/paper/verdict.txt; fi; \
+	exit $$status
 
 test: $(STAMP) ## the whole test suite
 	$(BIN)/python -m pytest -n 2 --dist loadfile --no-loadscope-reorder
+
+test-fast: $(STAMP) ## the tests for the loop of work, under a minute
+	$(BIN)/python -m pytest -n 2 --dist loadfile --no-loadscope-reorder -m "not slow"
 
 bench: $(BENCH_STAMP) ## the benchmarks, peers side by side
 	$(BIN)/python -m benchmarks
@@ -47,7 +56,7 @@ docs: $(DOCS_STAMP) ## the documentation site, in docs/_build/html
 
 identify: $(STAMP) ## infer the open parameters from the claims
 	$(SNAKEMAKE) identify
-	cp results/identification/identified.yaml config/identified.yaml
+	cp results/paper/identification/identified.yaml config/identified.yaml
 
 lock: ## resolve the requirements again (needs uv)
 	$(UV_COMPILE) requirements.in requirements-study.in requirements-dev.in \
@@ -59,18 +68,18 @@ lock: ## resolve the requirements again (needs uv)
 
 clean: ## remove the results and the environment
 	rm -rf .venv .snakemake
-	find results -mindepth 1 ! -name README.md -delete
+	find results/ -mindepth 1 ! -name README.md -delete
 
-$(STAMP): requirements.lock
+$(STAMP): $(if $(STALE),always)
 	@echo "making the environment in .venv (a minute or two)"
-	@$(PYTHON) -c 'import sys; sys.version_info >= (3, 11) or sys.exit("Python 3.11 or later is \
+	@$(PYTHON) -I -c 'import sys; sys.version_info >= (3, 11) or sys.exit("Python 3.11 or later is \
 	needed, this is " + sys.version.split()[0] + "; try make PYTHON=python3.12")'
-	@$(PYTHON) -m venv --clear .venv
+	@$(PYTHON) -I -m venv --clear .venv
 	@sed -n '/^setuptools==/,/[^\\]$$/p' requirements.lock >.venv/first.txt
 	@$(LOCKED) -r .venv/first.txt
 	@$(LOCKED) -r requirements.lock
 	@$(PIP) --no-index --no-deps --no-build-isolation --editable .
-	@touch $@
+	@sh .ci/stale_environment --state >$@
 
 $(DOCS_STAMP): $(STAMP) requirements-docs.lock
 	@$(LOCKED) -r requirements-docs.lock

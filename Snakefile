@@ -1,88 +1,101 @@
-# The pipeline: cases -> datasets -> figures and checks -> ledger -> report -> verdict.
+# The pipeline: Tab. 1 -> cases -> datasets -> figures and checks -> ledger -> report -> verdict.
 #
-#   snakemake                                           the study of the paper
-#   snakemake data                                      its cases and datasets only
-#   snakemake identify                                  what the paper does not print, inferred
-#   snakemake --config study=config/smoke.yaml          another study
-#   snakemake --profile workflow/profiles/slurm         on a cluster
+#   snakemake                                        the study of the paper
+#   snakemake data                                   its cases and datasets only
+#   snakemake identify                               what the paper does not print, inferred
+#   snakemake --config study=config/smoke.yaml       another study
+#   snakemake --profile profiles/slurm               on a cluster
 #
-# This file loads, validates and includes; the rules stand by stage in workflow/rules.
+# This file loads, checks and includes; the rules are in workflow/rules, a file for each stage.
 import sys
 
 from snakemake.utils import min_version
 
-from gearmesh.pipeline import job, plan as pipeline
 from gearmesh.data import paths
-from gearmesh.reproduction.claims import load_ledger
 from gearmesh.errors import InputError
 from gearmesh.identification import layout
-from gearmesh.identification.settings import load_settings
+from gearmesh.pipeline import locks, plan as pipeline
+from gearmesh.pipeline.messages import BAD_INPUT, say
 
 min_version("9.0")
 
 try:
-    PLAN = pipeline.load(config, workflow.configfiles)
-    LEDGER = load_ledger(paths.CLAIMS)
-    DESIGNS = load_settings(layout.SETTINGS)
-    KNOWN = {}
-    if workflow.is_main_process:
-        looks = workflow.output_settings.dryrun or pipeline.only_looks(sys.argv)
-        KNOWN = PLAN.look(asked=sys.argv, only_tell=looks or not job.hold_results())
+    PLAN = pipeline.load(
+        workflow.config_settings.config, workflow.configfiles, workflow.is_main_process
+    )
 except InputError as error:
-    job.tell(f"error: {error}")
-    sys.exit(job.BAD_INPUT)
+    say(f"error: {error}")
+    sys.exit(BAD_INPUT)
 
-# What runs the scripts is the environment of Snakemake, whatever the PATH is. Neither it nor the
-# name of the study is part of a command: both may change without a job having to run again.
+PLACES = PLAN.places
+LETTERS = list(PLAN.letters)
+
+# What runs the stages is the environment of Snakemake, whatever the PATH is. Neither it nor the
+# file of the study is part of a command: both may change without a job having to run again.
 shell.prefix(pipeline.prefix(PLAN))
 
 
 report: "workflow/report/workflow.rst"
 
 
+wildcard_constraints:
+    letter="[a-z]",
+    figure="|".join(paths.NOTEBOOK_NAMES),
+    variant="|".join(PLAN.study.variants).replace(".", r"\."),
+    design="|".join(PLAN.designs.designs),
+    index=r"\d+",
+
+
 localrules:
     all,
     data,
     datasets,
-    fig1,
-    identified_figures,
-    notebook_pages,
-    printed,
-    ledger,
-    report,
-    verdict,
+    figures,
+    identify,
+    hashes,
 
 
 rule all:
     input:
-        PLAN.batch_files,
-        KNOWN.values(),
-        paths.VERDICT,
+        PLACES.resonance,
+        PLACES.report,
+        PLACES.hashes,
+        PLACES.as_expected if PLAN.study.claims else [],
 
 
 rule data:
     input:
-        PLAN.batch_files,
-        KNOWN.values(),
-        paths.RESONANCE,
-        paths.BIFURCATION,
+        expand(PLACES.batch("{letter}"), letter=LETTERS),
+        PLACES.resonance,
+        PLACES.bifurcation,
 
 
 include: "workflow/rules/cases.smk"
 include: "workflow/rules/datasets.smk"
-include: "workflow/rules/figures.smk"
-include: "workflow/rules/claims.smk"
-include: "workflow/rules/report.smk"
+
+
+if PLAN.study.claims:
+
+    include: "workflow/rules/figures.smk"
+    include: "workflow/rules/claims.smk"
+    include: "workflow/rules/report.smk"
+
+else:
+
+    include: "workflow/rules/study.smk"
+
+
 include: "workflow/rules/identify.smk"
+include: "workflow/rules/hashes.smk"
 
 
 onstart:
-    job.begin_run(len(PLAN.cases))
+    locks.begin_run(PLACES)
 
 
 onsuccess:
-    job.tell_summary()
+    locks.end_run(PLACES)
 
 
 onerror:
-    job.tell_summary()
+    locks.end_run(PLACES)

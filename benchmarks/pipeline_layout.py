@@ -14,17 +14,16 @@ import time
 from pathlib import Path
 
 ROOT = Path(__file__).parents[1]
-COPIED = ("Snakefile", "config", "notebooks", "src", "workflow")
+COPIED = ("Snakefile", "config", "notebooks", "profiles", "src", "workflow")
 CORES = "2"
-PROFILE = ("--profile", "workflow/profiles/default")
 PLAIN_CASES = 24
 
 SAMPLE = """\
 base: paper.yaml
-study:
-  variants: [a-conservative, b-material, c-lubricant, c-material, d-both, h-material]
-  strong_damping: null
-  time_courses: null
+title: A sample
+variants: [a-conservative, b-material, c-lubricant, c-material, d-both, h-material]
+strong_damping: null
+time_courses: null
 """
 
 PLAIN = """\
@@ -51,8 +50,8 @@ def main() -> None:
         run(folder, "-s", "Plain", "plain/nu-0.6000.nc")  # compiles where that is needed
         shutil.rmtree(folder / "plain")
         plain = PLAIN_CASES / run(folder, "-s", "Plain")
-        seconds = run(folder, *PROFILE, "--config", "study=config/sample.yaml", "--", "data")
-        count = sum(1 for _ in (folder / "results" / "cases").rglob("*.nc"))
+        seconds = run(folder, "--config", "study=config/sample.yaml", "--", "data")
+        count = sum(1 for _ in (folder / "results" / "sample" / "cases").rglob("*.nc"))
         print(f"one job a case: {plain:.2f} cases a second ({PLAIN_CASES} cases)")
         print(f"batches:        {count / seconds:.0f} cases a second ({count} cases, datasets too)")
         print(f"ratio:          {count / seconds / plain:.0f}")

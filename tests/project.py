@@ -10,20 +10,17 @@ import time
 from pathlib import Path
 
 ROOT = Path(__file__).parents[1]
-COPIED = ("Snakefile", "config", "notebooks", "src", "workflow", "README.md")
-PROFILE = "workflow/profiles/default"
+COPIED = ("Snakefile", "config", "notebooks", "profiles", "src", "workflow", "README.md")
 PATIENCE = 280
 """Seconds after which a run hangs."""
 
 TINY = """\
 base: smoke.yaml
 title: A few cases
-study:
-  nu: {start: 0.6, stop: 1.2, step: 0.2}
-  variants: [a-conservative, c-material, c-lubricant]
-  cases_per_job: 7
-  strong_damping: {variant: c-material, factor: 5, nu: {start: 0.6, stop: 0.8, step: 0.2}}
-  time_courses: null
+nu: {start: 0.6, stop: 1.2, step: 0.2}
+variants: [a-conservative, c-material, c-lubricant]
+strong_damping: {variant: c-material, factor: 5, nu: {start: 0.6, stop: 0.8, step: 0.2}}
+time_courses: null
 """
 """A study of 14 cases, for tests that do without figures."""
 
@@ -55,7 +52,6 @@ class Project:
             elif source.exists():
                 shutil.copy2(source, folder / name)
         (folder / "config" / "tiny.yaml").write_text(TINY)
-        (folder / "README.md").touch()
         return cls(folder, config)
 
     def copy(self, folder: Path, linked: bool = False) -> "Project":
@@ -66,7 +62,7 @@ class Project:
         folder : Path
             Where the copy is made.
         linked : bool
-            Share the results with it: quicker, for tests that only plan.
+            Share the files of its results: quicker, for tests that only plan.
         """
         for source in self.folder.iterdir():
             shared = linked and source.name in ("results", ".snakemake")
@@ -77,25 +73,27 @@ class Project:
                 shutil.copy2(source, folder / source.name)
         return Project(folder, self.config)
 
-    def command(
-        self,
-        *arguments: str,
-        cores: int = 2,
-        profile: str = PROFILE,
-        options: tuple[str, ...] = (),
-    ) -> list[str]:
-        """Return the command line of a run."""
+    @property
+    def study(self) -> Path:
+        """The folder with the results of the study."""
+        return self.folder / "results" / Path(self.config).stem
+
+    def command(self, *arguments: str, options: tuple[str, ...] = ()) -> list[str]:
+        """Return the command line of a run, as a user types it."""
         return [
-            *(sys.executable, "-m", "snakemake", "--profile", profile),
-            *options,
-            *("--cores", str(cores), "--config", f"study={self.config}", "--"),
+            *(sys.executable, "-m", "snakemake", *options),
+            *("--config", f"study={self.config}", "--"),
             *arguments,
         ]
 
     def run(self, *arguments: str, **settings: object) -> subprocess.CompletedProcess:
         """Run targets to the end; settings are those of `command`."""
+        return self.execute(*self.command(*arguments, **settings))
+
+    def execute(self, *command: str) -> subprocess.CompletedProcess:
+        """Execute a command in the folder of the project."""
         return subprocess.run(
-            self.command(*arguments, **settings),
+            command,
             cwd=self.folder,
             env=self.environment,
             stdout=subprocess.PIPE,
@@ -120,25 +118,13 @@ class Project:
         )
 
     def plan(self, *arguments: str) -> set[str]:
-        """Return the names of the rules that a run would execute."""
-        command = self.command(*arguments)
-        command[command.index("--profile") : command.index("--profile") + 2] = []
-        found = subprocess.run(
-            [*command[:3], "--dry-run", "--nolock", "--rerun-incomplete", *command[3:]],
-            cwd=self.folder,
-            env=self.environment,
-            capture_output=True,
-            text=True,
-            timeout=PATIENCE,
-            check=False,
-        )
-        assert found.returncode == 0, found.stdout + found.stderr
-        lines = (found.stdout + found.stderr).splitlines()
-        return {
-            line.split()[1].rstrip(":")
-            for line in lines
-            if line.startswith(("rule ", "localrule "))
-        }
+        """Return the jobs that a run would execute, as their logs are called."""
+        options = ("--dry-run", "--quiet", "host", "reason")
+        found = self.run(*arguments, options=options)
+        assert found.returncode == 0, found.stdout
+        lines = [line.strip() for line in found.stdout.splitlines()]
+        logs = {Path(line.removeprefix("log: ")) for line in lines if line.startswith("log: ")}
+        return {log.stem for log in logs}
 
     def path(self, name: str | Path) -> Path:
         """Return the path of a file of the project."""
@@ -148,18 +134,17 @@ class Project:
         """Replace a text that must be there."""
         path = self.path(name)
         text = path.read_text(encoding="utf-8")
-        assert old in text, f"{name} lacks {old!r}"
+        assert old in text, f"{name} has no {old!r}"
         path.write_text(text.replace(old, new, 1), encoding="utf-8")
 
     def results(self) -> dict[str, str]:
-        """Return every file of the results with its SHA-256; hidden ones and logs aside."""
-        results = self.path("results")
+        """Return every result of the study with its SHA-256; what differs from run to run aside."""
         return {
-            str(path.relative_to(results)): hashlib.sha256(path.read_bytes()).hexdigest()
-            for path in sorted(results.rglob("*"))
+            str(path.relative_to(self.study)): hashlib.sha256(path.read_bytes()).hexdigest()
+            for path in sorted(self.study.rglob("*"))
             if path.is_file()
-            and path.parent.name != "logs"
-            and not any(p.startswith(".") for p in path.relative_to(results).parts)
+            and path.parent.name not in ("logs", "benchmarks")
+            and path.name not in (".run.lock", ".jobs.lock", ".again")
         }
 
 

@@ -8,6 +8,7 @@ import yaml
 from project import Project
 
 from gearmesh.data import paths
+from gearmesh.data.paths import Places
 from gearmesh.dynamics.response_curves import WIDTH
 from gearmesh.identification import design, layout, store, survey, table
 from gearmesh.identification.curves import ACCURACY, SampledCurve, scan_all
@@ -17,6 +18,7 @@ from gearmesh.reproduction import thresholds
 from gearmesh.solvers.simulation import simulate
 
 SETTINGS = paths.CONFIG / "identify.yaml"
+PLACES = Places("tiny")
 
 
 @pytest.fixture
@@ -134,23 +136,27 @@ def test_the_pipeline_identifies(small, monkeypatch):
     assert small.finished.returncode == 0, small.finished.stdout
     monkeypatch.chdir(small.folder)
     settings = load_settings(SETTINGS)
-    samples = store.read(layout.DATASET)
+    samples = store.read(layout.dataset(PLACES))
     assert {name: int(np.sum(samples.design == name)) for name in settings.designs} == {
         name: stated.points for name, stated in settings.designs.items()
     }
-    found = table.read(layout.FOUND)
+    found = table.read(layout.found(PLACES))
     assert list(found["claims"]) == survey.tested_claims()
     assert found["samples"] == {name: stated.points for name, stated in settings.designs.items()}
 
 
 def test_a_run_that_was_stopped_goes_on(small):
-    for made in (layout.batch_file("natural", 0), layout.DATASET, layout.FOUND):
+    for made in (
+        layout.batch_file(PLACES, "natural", 0),
+        layout.dataset(PLACES),
+        layout.found(PLACES),
+    ):
         (small.folder / made).unlink()
     planned = small.plan("identify")
-    assert planned >= {"identify_natural", "identification_dataset", "identified"}
-    assert not planned & {"identify_survey", "identify_truth"}
+    assert planned >= {"samples-natural-0", "all_samples", "identified"}
+    assert not [job for job in planned if job.startswith(("samples-survey", "samples-truth"))]
 
 
 def test_the_default_target_does_not_identify(small):
     planned = small.plan("all")
-    assert not [rule for rule in planned if rule.startswith(("identify", "identification"))]
+    assert not [job for job in planned if job.startswith(("samples", "box", "identified-"))]

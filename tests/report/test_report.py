@@ -12,6 +12,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from gearmesh.data import paths
+from gearmesh.data.paths import Places
 from gearmesh.data.writing import write_text
 from gearmesh.identification import layout
 from gearmesh.report import page as report
@@ -20,6 +21,8 @@ from gearmesh.report.presentation import claims_table, expected, found, number, 
 from gearmesh.reproduction.claims import Entry, Evidence, load_ledger, write_entries
 from gearmesh.reproduction.claims.checking import check_figure
 from gearmesh.reproduction.equations import EQUATIONS
+
+PLACES = Places("smoke")
 
 
 class Page(HTMLParser):
@@ -76,24 +79,24 @@ def entries(root, study):
 @pytest.fixture(scope="module")
 def built(root, small_run, small_study, entries):
     """Write the report of the smoke study, with stand-ins for its figures and notebooks."""
-    write_entries(small_run / paths.LEDGER, entries)
+    write_entries(small_run / PLACES.ledger, entries)
     for folder in ("workflow", "config"):
         (small_run / folder).symlink_to(root / folder)
     for name in paths.NOTEBOOK_NAMES:
-        executed = small_run / paths.executed_notebook(name)
+        executed = small_run / PLACES.executed_notebook(name)
         executed.parent.mkdir(exist_ok=True)
         nbformat.write(executed_notebook(name), executed)
     for name in paths.FIGURE_NAMES:
-        for file in paths.figure_files(name):
+        for file in PLACES.figure_files(name):
             (small_run / file).parent.mkdir(exist_ok=True)
             (small_run / file).touch()
     with pytest.MonkeyPatch.context() as patch:
         patch.chdir(small_run)
-        report.write_report(small_study)
+        report.write_report(small_study, PLACES)
         for name in paths.NOTEBOOK_NAMES:
-            page = notebook_page(paths.executed_notebook(name))
-            write_text(paths.notebook_page(name), page)
-        for path in layout.REPORTED.values():
+            page = notebook_page(PLACES.executed_notebook(name))
+            write_text(PLACES.notebook_page(name), page)
+        for path in layout.reported(PLACES).values():
             for suffix in (".png", ".svg"):
                 path.with_suffix(suffix).touch()
     return small_run
@@ -112,13 +115,13 @@ def executed_notebook(name: str):
 
 @pytest.fixture(scope="module")
 def pages(built):
-    files = [paths.REPORT, *map(paths.notebook_page, paths.NOTEBOOK_NAMES)]
+    files = [PLACES.report, *map(PLACES.notebook_page, paths.NOTEBOOK_NAMES)]
     return {file: (built / file).read_text(encoding="utf-8") for file in files}
 
 
 @pytest.fixture(scope="module")
 def page(pages):
-    return Page(pages[paths.REPORT])
+    return Page(pages[PLACES.report])
 
 
 def test_nothing_is_loaded_from_a_network_and_nothing_runs(pages):
@@ -168,7 +171,7 @@ def test_the_summary_counts_the_claims(page, entries):
 
 def test_every_figure_has_its_caption_and_its_notebook(page, root):
     for name in paths.FIGURE_NAMES:
-        caption = (root / report.CAPTIONS / f"{name}.rst").read_text(encoding="utf-8")
+        caption = (root / paths.CAPTIONS / f"{name}.rst").read_text(encoding="utf-8")
         assert Page(str(typeset(" ".join(caption.split())))).words in page.words
         assert f"../figures/{name}.svg" in page.links
     for name in paths.NOTEBOOK_NAMES:
@@ -215,7 +218,7 @@ def test_the_numbers_of_the_study_are_on_the_page(page, small_study):
 
 
 def test_failed_and_sensitive_cases_are_told(small_run, small_study, entries):
-    resonance = report.open_dataset(small_run / paths.RESONANCE)
+    resonance = report.open_dataset(small_run / PLACES.resonance)
     assert f"{int((resonance['status'] == 0).sum())} ok<" in render(small_study, entries, resonance)
     here = {"variant": "c-material", "nu": 0.9}
     resonance["status"].loc[here] = 1
@@ -231,13 +234,13 @@ def render(study, entries, resonance) -> str:
 
 
 def test_the_same_results_give_the_same_page(small_run, small_study, entries):
-    resonance = report.open_dataset(small_run / paths.RESONANCE)
+    resonance = report.open_dataset(small_run / PLACES.resonance)
     assert render(small_study, entries, resonance) == render(small_study, entries, resonance)
 
 
 def test_text_of_the_ledger_cannot_become_markup(small_run, small_study):
     evil = claim(statement="<script>alert(1)</script>", measured={"<b>": 1.0}, detail="<i>")
-    text = render(small_study, [evil], report.open_dataset(small_run / paths.RESONANCE))
+    text = render(small_study, [evil], report.open_dataset(small_run / PLACES.resonance))
     for piece in (text, claims_table([evil])):
         assert not {"script", "b", "i"} & set(Page(piece).tags) - {"b"}
         assert "<script>" not in piece
@@ -245,7 +248,7 @@ def test_text_of_the_ledger_cannot_become_markup(small_run, small_study):
 
 
 def test_what_is_unexpected_is_said(small_run, small_study):
-    resonance = report.open_dataset(small_run / paths.RESONANCE)
+    resonance = report.open_dataset(small_run / PLACES.resonance)
     surprise = claim(status="deviates", measured=0.7)
     assert "did not expect" in render(small_study, [surprise], resonance)
     assert "did not expect" not in render(small_study, [claim()], resonance)
@@ -261,7 +264,7 @@ def test_all_seven_equations_are_mathml():
 
 
 def test_captions_are_plain_text(root):
-    for file in (root / report.CAPTIONS).glob("*.rst"):
+    for file in (root / paths.CAPTIONS).glob("*.rst"):
         text = file.read_text(encoding="utf-8")
         assert not re.search(r"[*`|<>\\]|\.\. |::", text), file.name
         assert text.endswith(".\n")

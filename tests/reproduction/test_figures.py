@@ -10,8 +10,8 @@ from matplotlib.colors import to_rgb
 from matplotlib.figure import Figure
 from matplotlib.image import imread
 
-from gearmesh.data import paths
 from gearmesh.data.datasets import open_dataset
+from gearmesh.data.paths import FIGURE_NAMES, Places
 from gearmesh.errors import InputError
 from gearmesh.reproduction.figures import (
     canvas,
@@ -26,21 +26,23 @@ from gearmesh.reproduction.figures import (
     palette,
 )
 
+PLACES = Places("smoke")
+
 
 @pytest.fixture(scope="module")
 def resonance(small_run):
-    return open_dataset(small_run / paths.RESONANCE)
+    return open_dataset(small_run / PLACES.resonance)
 
 
 @pytest.fixture(scope="module")
 def bifurcation(small_run):
-    return open_dataset(small_run / paths.BIFURCATION)
+    return open_dataset(small_run / PLACES.bifurcation)
 
 
 @pytest.fixture(scope="module")
 def courses(small_run, small_study):
     wanted = ("c-lubricant", "c-material", "c-material-5x")
-    return orbit.read_time_courses(small_run / paths.CASES, small_study.time_courses, *wanted)
+    return orbit.read_time_courses(small_run / PLACES.cases, small_study.time_courses, *wanted)
 
 
 @pytest.fixture(scope="module")
@@ -70,7 +72,7 @@ def points(axes) -> np.ndarray:
     return joined[np.isfinite(joined).all(axis=1)]
 
 
-@pytest.mark.parametrize("name", paths.FIGURE_NAMES)
+@pytest.mark.parametrize("name", FIGURE_NAMES)
 def test_a_figure_has_the_same_bytes_each_time_whatever_the_settings(name, draw, tmp_path):
     first = canvas.save(draw[name](), tmp_path / "first")
     with mpl.rc_context({"font.size": 30, "svg.hashsalt": "other", "savefig.dpi": 20}):
@@ -81,7 +83,7 @@ def test_a_figure_has_the_same_bytes_each_time_whatever_the_settings(name, draw,
     assert b"<dc:date>" not in first[1].read_bytes()
 
 
-@pytest.mark.parametrize("name", paths.FIGURE_NAMES)
+@pytest.mark.parametrize("name", FIGURE_NAMES)
 def test_a_figure_is_as_wide_as_a_page(name, draw):
     assert draw[name]().get_size_inches()[0] == canvas.WIDTH
 
@@ -294,8 +296,8 @@ def test_fig4_draws_the_tunings_that_there_are(courses):
 
 
 def test_a_damaged_case_is_named(small_run, small_study, tmp_path):
-    source = small_run / paths.case_file("c-lubricant", 0.6)
-    damaged = tmp_path / Path(source).relative_to(small_run / paths.CASES)
+    source = small_run / PLACES.case("c-lubricant", 0.6)
+    damaged = tmp_path / Path(source).relative_to(small_run / PLACES.cases)
     damaged.parent.mkdir()
     damaged.write_bytes(source.read_bytes()[:-100])
     with pytest.raises(InputError, match=r"nu-0\.6000\.nc"):

@@ -7,14 +7,16 @@ import nbformat
 import pytest
 
 from gearmesh.data import paths
+from gearmesh.data.paths import Places
 from gearmesh.reproduction.claims import load_ledger, read_entries
 
+PAPER, SMOKE = Places("paper"), Places("smoke")
 PLACES = {
     "configuration": paths.PAPER,
-    "resonance": paths.RESONANCE,
-    "bifurcation": paths.BIFURCATION,
-    "thresholds": paths.THRESHOLDS,
-    "cases": paths.CASES,
+    "resonance": PAPER.resonance,
+    "bifurcation": PAPER.bifurcation,
+    "thresholds": PAPER.thresholds,
+    "cases": PAPER.cases,
     "ledger": paths.CLAIMS,
 }
 
@@ -55,8 +57,8 @@ def test_the_parameters_are_the_places_that_others_rely_on(name, notebook):
     given = {}
     exec(parameter_cell(notebook).source, given)
     del given["__builtins__"]
-    assert given.pop("figure") == str(paths.FIGURES / name)
-    assert given.pop("checks") == str(paths.check_file(name))
+    assert given.pop("figure") == str(PAPER.folder / "figures" / name)
+    assert given.pop("checks") == str(PAPER.check(name))
     assert given == {key: str(PLACES[key]) for key in given}
 
 
@@ -89,7 +91,10 @@ def test_a_notebook_runs_and_leaves_figure_and_checks(name, notebook, root, smal
         "ledger": root / paths.CLAIMS,
         "figure": tmp_path / name,
         "checks": tmp_path / "checks.json",
-        **{key: small_run / PLACES[key] for key in PLACES.keys() - {"configuration", "ledger"}},
+        **{
+            key: small_run / getattr(SMOKE, key)
+            for key in PLACES.keys() - {"configuration", "ledger"}
+        },
     }
     namespace = {}
     for cell in code_cells(notebook):
@@ -104,9 +109,10 @@ def test_a_notebook_runs_and_leaves_figure_and_checks(name, notebook, root, smal
 
 def test_the_pipeline_sets_every_parameter_of_every_notebook(root):
     """A parameter that the pipeline does not pass would silently keep its default."""
-    rule = (root / "workflow" / "rules" / "figures.smk").read_text(encoding="utf-8")
+    stage = root / "src" / "gearmesh" / "pipeline" / "stages" / "figures.py"
+    given = stage.read_text(encoding="utf-8")
     for name in paths.NOTEBOOK_NAMES:
         cells = json.loads((root / paths.notebook(name)).read_text(encoding="utf-8"))["cells"]
         (source,) = [c["source"] for c in cells if "parameters" in c["metadata"].get("tags", ())]
         for line in source:
-            assert f"{line.partition(' = ')[0]}=" in rule
+            assert f'"{line.partition(" = ")[0]}":' in given

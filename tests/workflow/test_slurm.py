@@ -120,6 +120,6 @@ def test_slurm_gives_the_bytes_of_a_local_run(slurm, smoke: Project, tmp_path: P
     shutil.rmtree(project.path("results"))
     shutil.rmtree(project.path(".snakemake"))
     polled = ("--slurm-init-seconds-before-status-checks", "5")
-    finished = project.run("all", profile="workflow/profiles/slurm", options=polled)
+    finished = project.run("all", options=("--profile", "profiles/slurm", *polled))
     assert "Submitted" in finished.stdout or "SLURM" in finished.stdout, finished.stdout
     assert project.results() == smoke.results(), finished.stdout

@@ -1,27 +1,38 @@
-# Integrate: a few jobs, each a batch of cases. Thousands of declared files would cost more than
-# the cases: Snakemake knows of the batch files, and of case files only what it has to (see
-# `Plan.look`).
-COMPUTE = pipeline.script("compute_cases")
+# Integrate: a job for each letter of Tab. 1. It writes a file for each case too, and its manifest
+# names them all. Thousands of declared files would cost Snakemake more than the cases.
+rule cases:
+    input:
+        again=lambda wildcards: PLAN.again("cases", wildcards.letter),
+    output:
+        PLACES.batch("{letter}"),
+    log:
+        PLACES.log("cases-{letter}"),
+    benchmark:
+        PLACES.benchmark("cases-{letter}")
+    priority: 1
+    resources:
+        mem_mb=1000,
+        runtime=30,
+    params:
+        made_of=lambda wildcards: PLAN.made_of("cases", wildcards.letter),
+    shell:
+        'python -m gearmesh.pipeline cases "$STUDY" {params.made_of} {wildcards.letter}'
+        " 2>&1 | tee {log}"
 
-for batch in PLAN.batches:
 
-    rule:
-        name:
-            f"cases_{batch.index}"
-        input:
-            pipeline.sources(COMPUTE),
-        output:
-            PLAN.batch_file(batch),
-            KNOWN.get(batch.index, []),
-        log:
-            f"results/logs/cases_{batch.index}.log",
-        priority: 1
-        resources:
-            mem_mb=1000,
-            runtime=30,
-        params:
-            recipe=PLAN.recipe,
-            members=PLAN.members(batch),
-            index=batch.index,
-        shell:
-            'python workflow/scripts/compute_cases.py "$STUDY" {params.index} 2>&1 | tee {log}'
+# A case file that is asked for by its name: where its letter is up to date, it is there already.
+rule case:
+    input:
+        lambda wildcards: ancient(PLACES.batch(wildcards.variant[0])),
+    output:
+        PLACES.case("{variant}", "{nu}"),
+    log:
+        PLACES.log("case-{variant}-{nu}"),
+    shell:
+        'python -m gearmesh.pipeline case "$STUDY" - {wildcards.variant} {wildcards.nu}'
+        " 2>&1 | tee {log}"
+
+
+use rule case as case_by_whole_path with:
+    output:
+        pipeline.whole_path(PLACES.case("{variant}", "{nu}")),

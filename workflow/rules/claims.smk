@@ -1,44 +1,46 @@
 # Put all checks together, and judge.
-PRINTED = pipeline.script("check_printed")
-COLLECT = pipeline.script("collect_claims")
-VERDICT = pipeline.script("give_verdict")
-
-
 rule printed:
     input:
-        pipeline.checked_by("printed", PRINTED),
+        again=PLAN.again("printed"),
     output:
-        paths.check_file("printed"),
+        PLACES.check("printed"),
     log:
-        "results/logs/printed.log",
+        PLACES.log("printed"),
+    benchmark:
+        PLACES.benchmark("printed")
     params:
-        recipe=PLAN.recipe,
-        claims=pipeline.claims_digest(LEDGER, "printed"),
+        made_of=PLAN.made_of("printed"),
     shell:
-        'python workflow/scripts/check_printed.py "$STUDY" 2>&1 | tee {log}'
+        'python -m gearmesh.pipeline printed "$STUDY" {params.made_of} 2>&1 | tee {log}'
 
 
 rule ledger:
     input:
-        sources=pipeline.sources(COLLECT),
-        ledger=paths.CLAIMS,
-        checks=[paths.check_file(name) for name in paths.CHECKED],
+        checks=expand(PLACES.check("{name}"), name=paths.CHECKED),
+        again=PLAN.again("ledger"),
     output:
-        report(paths.LEDGER, caption="../report/claims.rst", category="Claims"),
+        report(PLACES.ledger, caption="../report/claims.rst", category="Claims"),
+        PLACES.verdict,
     log:
-        "results/logs/ledger.log",
+        PLACES.log("ledger"),
+    params:
+        made_of=PLAN.made_of("ledger"),
     shell:
-        "python workflow/scripts/collect_claims.py {input.checks} 2>&1 | tee {log}"
+        'python -m gearmesh.pipeline ledger "$STUDY" {params.made_of} --read {input.checks}'
+        " 2>&1 | tee {log}"
 
 
+# The last job: it fails if a claim has another status than the ledger expects.
 rule verdict:
     input:
-        pipeline.sources(VERDICT),
-        paths.LEDGER,
-        paths.REPORT,
+        read=[PLACES.ledger, PLACES.verdict, PLACES.report, PLACES.hashes],
+        again=PLAN.again("verdict"),
     output:
-        paths.VERDICT,
+        PLACES.as_expected,
     log:
-        "results/logs/verdict.log",
+        PLACES.log("verdict"),
+    params:
+        made_of=PLAN.made_of("verdict"),
     shell:
-        "python workflow/scripts/give_verdict.py 2>&1 | tee {log}"
+        'python -m gearmesh.pipeline verdict "$STUDY" {params.made_of} --read {input.read}'
+        " 2>&1 | tee {log}"

@@ -1,18 +1,17 @@
 # Put all cases together.
-DATASETS = pipeline.script("make_datasets")
-
-
 rule datasets:
     input:
-        sources=pipeline.sources(DATASETS),
-        batches=PLAN.batch_files,
+        batches=expand(PLACES.batch("{letter}"), letter=LETTERS),
+        again=PLAN.again("datasets"),
     output:
-        str(paths.RESONANCE),
-        str(paths.BIFURCATION),
+        PLACES.resonance,
+        PLACES.bifurcation,
     log:
-        "results/logs/datasets.log",
+        PLACES.log("datasets"),
+    benchmark:
+        PLACES.benchmark("datasets")
     params:
-        recipe=PLAN.recipe,
-        grid=PLAN.grid,
+        made_of=PLAN.made_of("datasets"),
     shell:
-        'python workflow/scripts/make_datasets.py "$STUDY" {input.batches} 2>&1 | tee {log}'
+        'python -m gearmesh.pipeline datasets "$STUDY" {params.made_of} --read {input.batches}'
+        " 2>&1 | tee {log}"

@@ -1,79 +1,66 @@
 # Execute the notebooks: each draws a figure and checks its claims.
-NOTEBOOK = pipeline.script("run_notebook")
-FIG1 = pipeline.script("draw_fig1")
-THRESHOLDS = pipeline.script("locate_thresholds")
-
-# Variants whose time courses a figure shows.
-SHOWN = {
-    "fig4": ["c-lubricant"],
-    "fig5": ["c-material"],
-    "fig6": ["c-material", "c-material-5x"],
-    "fig7": ["c-material", "c-material-5x"],
-}
-STYLE = "src/gearmesh/reproduction/figures/gearmesh.mplstyle"
-LOOKS = [STYLE, "src/gearmesh/report/templates/claims.html.j2"]
-
-
 rule thresholds:
     input:
-        pipeline.sources(THRESHOLDS),
+        again=PLAN.again("thresholds"),
     output:
-        str(paths.THRESHOLDS),
+        PLACES.thresholds,
     log:
-        "results/logs/thresholds.log",
+        PLACES.log("thresholds"),
+    benchmark:
+        PLACES.benchmark("thresholds")
     # All figures wait for it, and it compiles code of its own: it goes first.
     priority: 3
     params:
-        recipe=PLAN.recipe,
-        variants=PLAN.variants,
+        made_of=PLAN.made_of("thresholds"),
     shell:
-        'python workflow/scripts/locate_thresholds.py "$STUDY" 2>&1 | tee {log}'
+        'python -m gearmesh.pipeline thresholds "$STUDY" {params.made_of} 2>&1 | tee {log}'
 
 
 rule fig1:
     input:
-        pipeline.sources(FIG1),
-        STYLE,
+        again=PLAN.again("fig1"),
     output:
-        report(paths.FIGURES / "fig1.png", caption="../report/fig1.rst", category="Figures"),
-        paths.FIGURES / "fig1.svg",
+        report(
+            PLACES.figure_files("fig1")[0],
+            caption="../report/fig1.rst",
+            category="Figures",
+        ),
+        PLACES.figure_files("fig1")[1],
     log:
-        "results/logs/fig1.log",
+        PLACES.log("fig1"),
+    benchmark:
+        PLACES.benchmark("fig1")
     # It needs nothing that is computed: it fills the time that others wait for compiled code.
     priority: 2
+    params:
+        made_of=PLAN.made_of("fig1"),
     shell:
-        "python workflow/scripts/draw_fig1.py {output} 2>&1 | tee {log}"
+        'python -m gearmesh.pipeline fig1 "$STUDY" {params.made_of} 2>&1 | tee {log}'
 
 
-for figure in paths.NOTEBOOK_NAMES:
+rule figure:
+    input:
+        read=[PLACES.resonance, PLACES.bifurcation, PLACES.thresholds],
+        again=lambda wildcards: PLAN.again("figure", wildcards.figure),
+    output:
+        png=report(
+            PLACES.figure_files("{figure}")[0],
+            caption="../report/figure.rst",
+            category="Figures",
+        ),
+        svg=PLACES.figure_files("{figure}")[1],
+        checks=PLACES.check("{figure}"),
+    log:
+        PLACES.executed_notebook("{figure}"),
+    benchmark:
+        PLACES.benchmark("figure-{figure}")
+    params:
+        made_of=lambda wildcards: PLAN.made_of("figure", wildcards.figure),
+    shell:
+        'python -m gearmesh.pipeline figure "$STUDY" {params.made_of} {wildcards.figure}'
+        " --read {input.read}"
 
-    rule:
-        name:
-            figure
-        input:
-            LOOKS,
-            sources=pipeline.checked_by(figure, NOTEBOOK, str(paths.notebook(figure))),
-            notebook=paths.notebook(figure),
-            resonance=paths.RESONANCE,
-            bifurcation=paths.BIFURCATION,
-            thresholds=paths.THRESHOLDS,
-            courses=PLAN.time_courses(SHOWN.get(figure, [])),
-        output:
-            png=report(
-                paths.FIGURES / f"{figure}.png",
-                caption=f"../report/{figure}.rst",
-                category="Figures",
-            ),
-            svg=paths.FIGURES / f"{figure}.svg",
-            checks=paths.check_file(figure),
-        log:
-            paths.executed_notebook(figure),
-        params:
-            recipe=PLAN.recipe,
-            claims=pipeline.claims_digest(LEDGER, figure),
-            ledger=str(paths.CLAIMS),
-        shell:
-            'python workflow/scripts/run_notebook.py {input.notebook} {log} configuration="$STUDY"'
-            " resonance={input.resonance} bifurcation={input.bifurcation}"
-            " thresholds={input.thresholds} cases=results/cases ledger={params.ledger}"
-            " figure={output.png} checks={output.checks}"
+
+rule figures:
+    input:
+        [PLACES.figure_files(name) for name in paths.FIGURE_NAMES],

@@ -1,111 +1,101 @@
 # Infer what the paper does not print: samples of the open parameters, in batches; focused designs
 # fill a box around the best of what came before. Nothing here is part of the default target, which
 # reads the committed table config/identified.yaml.
-from gearmesh.data import provenance
-from gearmesh.identification.design import left_alone
-
-MEASURE = pipeline.script("identify_batch")
-BOX = pipeline.script("identify_box")
-GATHER = pipeline.script("identify_dataset")
-INFER = pipeline.script("identify_parameters")
-RUN = pipeline.script("run_notebook")
+DESIGNS = PLAN.designs.designs
+FOCUSED = [name for name, design in DESIGNS.items() if design.around]
 
 
-for name, stated in DESIGNS.designs.items():
-
-    rule:
-        name:
-            f"identify_{name}"
-        input:
-            pipeline.sources(MEASURE),
-            layout.box_file(name) if stated.around else [],
-        output:
-            layout.FOLDER / name / r"batch-{index,\d+}.nc",
-        log:
-            f"results/logs/identify_{name}_{{index}}.log",
-        resources:
-            mem_mb=1500,
-            runtime=30,
-        params:
-            recipe=left_alone(stated, PLAN.study.pair),
-            versions=str(provenance.versions()),
-            settings=str(layout.SETTINGS),
-            stated=DESIGNS.sampling(name),
-            design=name,
-        shell:
-            'python workflow/scripts/identify_batch.py {params.settings} "$STUDY" {params.design}'
-            " {wildcards.index} {output} 2>&1 | tee {log}"
-
-    if stated.around:
-
-        rule:
-            name:
-                f"identify_{name}_box"
-            input:
-                pipeline.sources(BOX),
-                paths.CLAIMS,
-                batches=layout.batch_files(DESIGNS, *layout.family(DESIGNS, stated.around)),
-            output:
-                layout.box_file(name),
-            log:
-                f"results/logs/identify_{name}_box.log",
-            params:
-                settings=str(layout.SETTINGS),
-                stated=DESIGNS.sampling(name),
-                design=name,
-            shell:
-                "python workflow/scripts/identify_box.py {params.settings} {params.design}"
-                " {input.batches} 2>&1 | tee {log}"
+def batches_of(*designs):
+    return layout.batch_files(PLACES, PLAN.designs, *designs)
 
 
-rule identification_dataset:
+rule samples:
     input:
-        sources=pipeline.sources(GATHER),
-        batches=layout.batch_files(DESIGNS, *DESIGNS.designs),
+        read=lambda wildcards: (
+            layout.box_file(PLACES, wildcards.design) if wildcards.design in FOCUSED else []
+        ),
+        again=lambda wildcards: PLAN.again("samples", wildcards.design, wildcards.index),
     output:
-        layout.DATASET,
+        layout.batch_file(PLACES, "{design}", "{index}"),
     log:
-        "results/logs/identification_dataset.log",
+        PLACES.log("samples-{design}-{index}"),
+    benchmark:
+        PLACES.benchmark("samples-{design}-{index}")
+    resources:
+        mem_mb=1500,
+        runtime=30,
+    params:
+        made_of=lambda wildcards: PLAN.made_of("samples", wildcards.design, wildcards.index),
     shell:
-        "python workflow/scripts/identify_dataset.py {input.batches} 2>&1 | tee {log}"
+        'python -m gearmesh.pipeline samples "$STUDY" {params.made_of} {wildcards.design}'
+        " {wildcards.index} --read {input.read} 2>&1 | tee {log}"
+
+
+rule box:
+    input:
+        read=lambda wildcards: batches_of(
+            *layout.family(PLAN.designs, DESIGNS[wildcards.design].around)
+        ),
+        again=lambda wildcards: PLAN.again("box", wildcards.design),
+    output:
+        layout.box_file(PLACES, "{design}"),
+    log:
+        PLACES.log("box-{design}"),
+    wildcard_constraints:
+        design="|".join(FOCUSED),
+    params:
+        made_of=lambda wildcards: PLAN.made_of("box", wildcards.design),
+    shell:
+        'python -m gearmesh.pipeline box "$STUDY" {params.made_of} {wildcards.design}'
+        " --read {input.read} 2>&1 | tee {log}"
+
+
+rule all_samples:
+    input:
+        read=batches_of(*DESIGNS),
+        again=PLAN.again("all_samples"),
+    output:
+        layout.dataset(PLACES),
+    log:
+        PLACES.log("all_samples"),
+    params:
+        made_of=PLAN.made_of("all_samples"),
+    shell:
+        'python -m gearmesh.pipeline all_samples "$STUDY" {params.made_of} --read {input.read}'
+        " 2>&1 | tee {log}"
 
 
 rule identified:
     input:
-        pipeline.sources(INFER),
-        paths.CLAIMS,
-        layout.DATASET,
-        [layout.box_file(name) for name, stated in DESIGNS.designs.items() if stated.around],
-        settings=layout.SETTINGS,
+        read=[layout.dataset(PLACES), *(layout.box_file(PLACES, name) for name in FOCUSED)],
+        again=PLAN.again("identified"),
     output:
-        layout.FOUND,
+        layout.found(PLACES),
     log:
-        "results/logs/identified.log",
+        PLACES.log("identified"),
+    params:
+        made_of=PLAN.made_of("identified"),
     shell:
-        "python workflow/scripts/identify_parameters.py {input.settings} 2>&1 | tee {log}"
+        'python -m gearmesh.pipeline identified "$STUDY" {params.made_of} --read {input.read}'
+        " 2>&1 | tee {log}"
 
 
 rule identification_notebook:
     input:
-        sources=pipeline.sources("notebooks/identification.ipynb", RUN),
-        table=layout.FOUND,
-        samples=layout.DATASET,
-        ledger=paths.CLAIMS,
-        settings=layout.SETTINGS,
+        read=[layout.found(PLACES), layout.dataset(PLACES)],
+        again=PLAN.again("identification_notebook"),
     output:
-        [layout.FIGURES / f"{name}.png" for name in layout.FIGURE_NAMES],
-        [layout.FIGURES / f"{name}.svg" for name in layout.FIGURE_NAMES],
+        layout.figure_files(PLACES),
     log:
-        layout.NOTEBOOK,
+        PLACES.executed_notebook("identification"),
     params:
-        recipe=PLAN.recipe,
+        made_of=PLAN.made_of("identification_notebook"),
     shell:
-        "python workflow/scripts/run_notebook.py notebooks/identification.ipynb {log}"
-        ' configuration="$STUDY" table={input.table} samples={input.samples}'
-        " ledger={input.ledger} settings={input.settings}"
+        'python -m gearmesh.pipeline identification_notebook "$STUDY" {params.made_of}'
+        " --read {input.read}"
 
 
 rule identify:
     input:
-        layout.FOUND,
-        [layout.FIGURES / f"{name}.svg" for name in layout.FIGURE_NAMES],
+        layout.found(PLACES),
+        layout.figure_files(PLACES),

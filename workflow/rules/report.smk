@@ -1,60 +1,55 @@
-# The report: its page, the notebooks as pages beside it, and the captions of `snakemake --report`.
-
-from gearmesh.identification.design import stated
-
-REPORT = pipeline.script("build_report")
-SHOW = pipeline.script("show_notebooks")
-IDENTIFIED = pipeline.script("draw_identified")
-
-
+# The report: its page, the notebooks as pages beside it, and two figures of its own.
 rule identified_figures:
     input:
-        pipeline.sources(IDENTIFIED),
-        STYLE,
-        [layout.IDENTIFIED, layout.SETTINGS],
+        again=PLAN.again("identified_figures"),
     output:
-        [f"{path}{suffix}" for path in layout.REPORTED.values() for suffix in (".png", ".svg")],
+        [f"{path}{end}" for path in layout.reported(PLACES).values() for end in (".png", ".svg")],
     log:
-        "results/logs/identified_figures.log",
+        PLACES.log("identified_figures"),
+    benchmark:
+        PLACES.benchmark("identified_figures")
     # As fig1.
     priority: 2
     params:
-        shown=str(stated(PLAN.study.pair)),
+        made_of=PLAN.made_of("identified_figures"),
     shell:
-        'python workflow/scripts/draw_identified.py "$STUDY" 2>&1 | tee {log}'
+        'python -m gearmesh.pipeline identified_figures "$STUDY" {params.made_of} 2>&1 | tee {log}'
 
 
 rule notebook_pages:
     input:
-        sources=pipeline.sources(SHOW),
-        template="src/gearmesh/report/templates/notebook.html.j2",
-        notebooks=[paths.executed_notebook(name) for name in paths.NOTEBOOK_NAMES],
+        notebooks=expand(PLACES.executed_notebook("{name}"), name=paths.NOTEBOOK_NAMES),
+        again=PLAN.again("notebook_pages"),
     output:
-        [paths.notebook_page(name) for name in paths.NOTEBOOK_NAMES],
+        expand(PLACES.notebook_page("{name}"), name=paths.NOTEBOOK_NAMES),
     log:
-        "results/logs/notebook_pages.log",
+        PLACES.log("notebook_pages"),
+    benchmark:
+        PLACES.benchmark("notebook_pages")
+    params:
+        made_of=PLAN.made_of("notebook_pages"),
     shell:
-        "python workflow/scripts/show_notebooks.py 2>&1 | tee {log}"
+        'python -m gearmesh.pipeline notebook_pages "$STUDY" {params.made_of} --read {input.notebooks}'
+        " 2>&1 | tee {log}"
 
 
 rule report:
     input:
-        sources=pipeline.sources(REPORT),
-        templates=pipeline.templates(),
-        captions=pipeline.captions(),
-        identified=[layout.IDENTIFIED, layout.SETTINGS, paths.CLAIMS],
-        ledger=paths.LEDGER,
-        resonance=paths.RESONANCE,
+        read=[PLACES.ledger, PLACES.resonance],
         shown=[
-            [file for name in paths.FIGURE_NAMES for file in paths.figure_files(name)],
+            rules.figures.input,
             rules.identified_figures.output,
             rules.notebook_pages.output,
         ],
+        again=PLAN.again("report"),
     output:
-        report(paths.REPORT, caption="../report/page.rst", category="Report"),
+        report(PLACES.report, caption="../report/page.rst", category="Report"),
     log:
-        "results/logs/report.log",
+        PLACES.log("report"),
+    benchmark:
+        PLACES.benchmark("report")
     params:
-        study=PLAN.stated,
+        made_of=PLAN.made_of("report"),
     shell:
-        'python workflow/scripts/build_report.py "$STUDY" 2>&1 | tee {log}'
+        'python -m gearmesh.pipeline report "$STUDY" {params.made_of} --read {input.read} {input.shown}'
+        " 2>&1 | tee {log}"

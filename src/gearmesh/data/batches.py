@@ -1,15 +1,16 @@
-"""Batches: the cases of one job, and the file that hands them on to the datasets.
+"""Batches: the cases of a letter of Tab. 1, and the file that hands them on to the datasets.
 
-A job computes a batch of cases and writes them, one after the other, into one batch file. The
+A job computes all cases of a letter and writes them, one after the other, into one batch file. The
 datasets are made of these few files. The thousands of case files are for readers; a study that is
-too large for them (`study.case_files: false`) does without and loses nothing else.
+too large for them (``case_files: false``) does without and loses nothing else.
 """
 
-import hashlib
+import contextlib
 import itertools
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import netCDF4
 import numpy as np
@@ -24,19 +25,6 @@ STORED = tuple((field, field.relative or field.name) for field in FIELDS)
 """Fields and names of the variables of a batch file: lengths in static deflections only."""
 
 
-@dataclass(frozen=True, slots=True)
-class Batch:
-    """Cases that one job computes."""
-
-    index: int
-    cases: tuple[Case, ...]
-
-    @property
-    def name(self) -> str:
-        """Name of the batch and of its file."""
-        return f"batch-{self.index:04d}"
-
-
 @dataclass(slots=True)
 class Content:
     """What a batch file holds.
@@ -46,7 +34,7 @@ class Content:
     variants : list of str, one for each case
         Names of the variants.
     nu : ndarray, shape (n_cases,)
-        Tunings nu_s.
+        Mesh frequencies nu_s.
     counts : ndarray, shape (n_cases,)
         Numbers of extrema.
     columns : dict of str to ndarray
@@ -60,7 +48,7 @@ class Content:
     columns: dict[str, np.ndarray]
 
     def split(self) -> Iterator["Content"]:
-        """Yield the stretches of cases of one variant."""
+        """Yield the cases of one variant after the other."""
         first = 0
         for _, group in itertools.groupby(self.variants):
             last = first + len(list(group))
@@ -78,53 +66,46 @@ class Content:
         return Content(self.variants[cases], self.nu[cases], self.counts[cases], columns)
 
 
-def partition(cases: Sequence[Case], size: int) -> list[Batch]:
-    """Cut a list of cases into batches of about the same size, `size` at the most."""
-    number = -(-len(cases) // size)
-    ends = [len(cases) * i // number for i in range(number + 1)]
-    pieces = itertools.pairwise(ends)
-    return [Batch(i, tuple(cases[start:end])) for i, (start, end) in enumerate(pieces)]
+def by_letter(cases: Iterable[Case]) -> dict[str, list[Case]]:
+    """Return the cases of each letter of Tab. 1, in their order."""
+    found: dict[str, list[Case]] = {}
+    for case in cases:
+        found.setdefault(case.variant.letter, []).append(case)
+    return found
 
 
-def attributes(parameters: Pair, batch: Batch) -> dict[str, str | float]:
-    """Return the global attributes of a batch file."""
-    digests = "".join(casefile.case_digest(parameters, case) for case in batch.cases)
-    return {
-        "Conventions": "CF-1.11",
-        "title": f"gear mesh, {len(batch.cases)} cases",
-        "cases_sha256": hashlib.sha256(digests.encode()).hexdigest(),
-        **casefile.common_attributes(parameters),
-    }
-
-
-def write_batch(
-    path: Path, attributes: Mapping[str, str | float], batch: Batch, records: Sequence[Record]
-) -> None:
+def write_batch(path: Path, pair: Pair, cases: Sequence[Case], records: Sequence[Record]) -> None:
     """Write a batch file, whole or not at all.
 
     Parameters
     ----------
     path : Path
         File.
-    attributes : mapping
-        See `attributes`.
-    batch : Batch
+    pair : Pair
+        What all cases share.
+    cases : sequence of Case
         The cases.
     records : sequence of Record
         What was computed, in the order of the cases.
     """
-    names = list(dict.fromkeys(case.variant.name for case in batch.cases))
+    names = list(dict.fromkeys(case.variant.name for case in cases))
     index = Field("variant", "", "1", "damping variant", "i2", dict(enumerate(names)))
-    with casefile.sealed(path, casefile.recipe(attributes)) as file:
-        file.setncatts(attributes)
+    with casefile.created(path) as file:
+        file.setncatts(
+            {
+                "Conventions": "CF-1.11",
+                "title": f"gear mesh, {len(cases)} cases",
+                **casefile.common_attributes(pair),
+            }
+        )
         file.createDimension("case", len(records))
-        values = {
-            "variant": [names.index(case.variant.name) for case in batch.cases],
-            "nu": [case.nu for case in batch.cases],
+        values: dict[str, Any] = {
+            "variant": [names.index(case.variant.name) for case in cases],
+            "nu": [case.nu for case in cases],
             "extremum_count": [record["extremum_kind"].size for record in records],
         }
         casefile.define(file, index, "variant", ("case",))
-        casefile.define(file, Field("nu", "", "1", "tuning nu_s"), "nu", ("case",))
+        casefile.define(file, Field("nu", "", "1", "mesh frequency nu_s"), "nu", ("case",))
         count = Field("extremum_count", "", "1", "number of extrema of a case", "i4")
         rows = casefile.define(file, count, "extremum_count", ("case",))
         rows.sample_dimension = "extremum"
@@ -155,10 +136,7 @@ def read_batch(path: Path) -> Content:
     InputError
         If it is missing or damaged.
     """
-    if not casefile.is_whole(path):
-        raise InputError(f"{path}: missing or damaged; delete it and run again")
-    with netCDF4.Dataset(path) as file:
-        file.set_auto_mask(False)
+    with _opened(path) as file:
         names = file["variant"].flag_meanings.split()
         return Content(
             variants=[names[i] for i in file["variant"][:]],
@@ -170,22 +148,15 @@ def read_batch(path: Path) -> Content:
 
 def read_counts(path: Path) -> np.ndarray:
     """Read the numbers of extrema of the cases of a batch file, and no more."""
+    with _opened(path) as file:
+        return file["extremum_count"][:]
+
+
+@contextlib.contextmanager
+def _opened(path: Path) -> Iterator[netCDF4.Dataset]:
     try:
         with netCDF4.Dataset(path) as file:
             file.set_auto_mask(False)
-            return file["extremum_count"][:]
-    except (OSError, IndexError):
+            yield file
+    except (OSError, IndexError, RuntimeError):
         raise InputError(f"{path}: missing or damaged; delete it and run again") from None
-
-
-def join(contents: Sequence[Content]) -> Content:
-    """Put contents one behind the other."""
-    return Content(
-        variants=[name for content in contents for name in content.variants],
-        nu=np.concatenate([content.nu for content in contents]),
-        counts=np.concatenate([content.counts for content in contents]),
-        columns={
-            name: np.concatenate([content.columns[name] for content in contents])
-            for _, name in STORED
-        },
-    )

@@ -1,19 +1,18 @@
-"""One case in one NetCDF-4 file: how it is laid out, written, sealed and read.
+"""One case in one NetCDF-4 file: how it is laid out, written and read.
 
 `FIELDS` is the layout. A `Record` holds a case as its file does: variable name -> array, so what
 is read from a file is written again with the same bytes. A file states in its attributes how it
-was made (`attributes`), and carries a seal: its recipe (the SHA-256 of these attributes) and the
-SHA-256 of its bytes. A look at the seal tells, without the NetCDF library, whether a file is whole
-and whether it is the one that is wanted.
+was made (`attributes`). Whether it is still as it was written is what manifests say
+(`gearmesh.data.manifest`).
 """
 
 import contextlib
 import functools
 import hashlib
-import json
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import netCDF4
 import numpy as np
@@ -30,11 +29,8 @@ EXTREMUM_KINDS = {1: "maximum", -1: "minimum"}
 Record = dict[str, np.ndarray]
 """A case as its file holds it: variable name -> array."""
 
-_SEAL = b"gearmesh-seal "
-_DIGITS = 64
-_BLANK = b"0" * _DIGITS
-_SEAL_LENGTH = len(_SEAL) + 2 * _DIGITS + 1
-_BLOCK = 2**20
+MISSING = -1
+"""What stands for an integer that does not exist."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -55,6 +51,8 @@ class Field:
         NumPy type.
     flags : mapping of int to str
         Values and meanings of a CF flag variable.
+    fill : float
+        Value that stands for one that does not exist; other numbers are not-a-number then.
     """
 
     name: str
@@ -63,6 +61,7 @@ class Field:
     long_name: str
     kind: str = "f8"
     flags: Mapping[int, str] | None = None
+    fill: float | None = None
 
     @property
     def relative(self) -> str | None:
@@ -85,11 +84,12 @@ FIELDS = (
     Field("y_min_error", "", "mm", "estimated integration error of y_min"),
     Field("contact_loss_fraction", "", "1", "share of the kept time with contact loss"),
     Field("inverse_mesh_fraction", "", "1", "share of the kept time in inverse mesh"),
-    Field("n_contact_losses", "", "1", "number of contact losses in the kept revolutions", "i4"),
+    Field("n_contact_losses", "", "1", "number of contact losses in the kept revolutions", "i4",
+          fill=MISSING),
     Field("turning_points_per_period", "", "1", "mean number of extrema of y in a mesh period"),
     Field("mesh_period", "", "s", "mesh period"),
     Field("sensitive", "", "1", "whether the orbit amplifies integration errors", "i1",
-          {0: "no", 1: "yes"}),
+          {0: "no", 1: "yes"}, MISSING),
     Field("status", "", "1", "status of the integration", "i1", dict(enumerate(STATUSES))),
 )  # fmt: skip
 """The variables of every case."""
@@ -145,6 +145,8 @@ def _values(response: Response) -> Iterator[tuple[Field, object]]:
     for field in FIELDS:
         if field.name == "status":
             yield field, STATUSES.index(response.status)
+        elif response.status != "ok" and not field.dimension:
+            yield field, np.nan if field.fill is None else field.fill
         elif field.name == "mesh_period":
             yield field, response.period
         else:
@@ -203,11 +205,6 @@ def common_attributes(parameters: Pair) -> dict[str, str | float]:
     }
 
 
-def recipe(attributes: Mapping[str, str | float]) -> str:
-    """Return the SHA-256 of the attributes of a file, by which its seal names what it holds."""
-    return hashlib.sha256(json.dumps(attributes, sort_keys=True).encode()).hexdigest()
-
-
 def write_case(path: Path | str, attributes: Mapping[str, str | float], columns: Record) -> None:
     """Write a case file, whole or not at all; the same input gives the same bytes.
 
@@ -221,20 +218,20 @@ def write_case(path: Path | str, attributes: Mapping[str, str | float], columns:
         See `record`.
     """
     path = Path(path)
-    with sealed(path, recipe(attributes)) as file:
+    with created(path) as file:
         file.setncatts(attributes)
         fields = [field for field in (*FIELDS, *SAMPLE_FIELDS) if field.name in columns]
         for field in fields:
             if field.dimension and field.dimension not in file.dimensions:
                 file.createDimension(field.dimension, columns[field.name].size)
         # All definitions before all values: the library would flush at every change between them.
-        created = [
+        variables = [
             define(file, field, name, (field.dimension,) if field.dimension else ())
             for field in fields
             for name in (field.name, field.relative)
             if name
         ]
-        for variable in created:
+        for variable in variables:
             variable[...] = columns[variable.name]
 
 
@@ -243,13 +240,12 @@ def define(
     field: Field,
     name: str,
     dimensions: tuple[str, ...],
-    fill_value: float | bool | None = False,
-    **storage: object,
-) -> netCDF4.Variable:
+    **storage: Any,
+) -> "netCDF4.Variable[Any]":
     """Create the variable of a field, or of its twin, with its attributes."""
-    variable = file.createVariable(name, field.kind, dimensions, fill_value=fill_value, **storage)
+    variable = file.createVariable(name, field.kind, dimensions, fill_value=field.fill, **storage)
     relative = name != field.name
-    stated = {
+    stated: dict[str, Any] = {
         "units": "1" if relative else field.unit,
         "long_name": field.long_name + (", in static deflections y_st" if relative else ""),
     }
@@ -262,86 +258,26 @@ def define(
 
 
 @contextlib.contextmanager
-def sealed(path: Path, made_of: str) -> Iterator[netCDF4.Dataset]:
-    """Open a NetCDF-4 file that comes into being whole and sealed when the context ends.
+def created(path: Path) -> Iterator[netCDF4.Dataset]:
+    """Open a NetCDF-4 file that comes into being whole when the context ends.
 
     Parameters
     ----------
     path : Path
-        The file; its folder is made where it lacks.
-    made_of : str
-        The recipe that the seal states.
+        The file; its folder is made if it is missing.
 
     Raises
     ------
     InputError
         If it cannot be written: one line that says why.
     """
-    with writing.replacing(path) as temporary:
-        with netCDF4.Dataset(temporary, "w", format="NETCDF4") as file:
-            # Values that nobody writes would be filled first, at the cost of a second pass.
-            file.set_fill_off()
-            _define_seal(file)
-            yield file
-            _write_blank_seal(file, made_of)
-        _seal(temporary)
-
-
-def _define_seal(file: netCDF4.Dataset) -> None:
-    file.createDimension("seal_length", _SEAL_LENGTH)
-    seal = file.createVariable("seal", "S1", ("seal_length",), fill_value=False)
-    seal.set_auto_chartostring(False)
-    long_name = (
-        "SHA-256 of the recipe of this file, and of its bytes with these last 64 digits at 0"
-    )
-    seal.setncatts({"units": "1", "long_name": long_name})
-
-
-def _write_blank_seal(file: netCDF4.Dataset, made_of: str) -> None:
-    file["seal"][:] = np.frombuffer(_SEAL + made_of.encode() + b" " + _BLANK, "S1")
-
-
-def _seal(path: Path) -> None:
-    """Put the checksum of a closed file into its seal."""
-    place, seal, digest = _look(path)
-    with path.open("r+b") as file:
-        file.seek(place + len(seal) - _DIGITS)
-        file.write(digest)
-
-
-def is_whole(path: Path, made_of: str | None = None) -> bool:
-    """Tell whether a sealed file is as it was written, and by the recipe `made_of` if given."""
-    try:
-        _, seal, digest = _look(path)
-    except OSError:
-        return False
-    recipe = seal[len(_SEAL) : -_DIGITS - 1].decode("latin-1")
-    return seal[-_DIGITS:] == digest and made_of in (None, recipe)
-
-
-def _look(path: Path) -> tuple[int, bytes, bytes]:
-    """Return the place of a file's seal, the seal, and the SHA-256 of the file with blank digits.
-
-    A dataset may be large, so no more than a block of it is in memory.
-    """
-    total, place, seal, overlap = hashlib.sha256(), 0, b"", b""
-    with path.open("rb", buffering=0) as file:
-        while block := file.read(_BLOCK):
-            block = overlap + block
-            overlap = b""
-            start = -1 if seal else block.find(_SEAL)
-            if start >= 0:
-                block += file.read(max(0, start + _SEAL_LENGTH - len(block)))
-                end = start + _SEAL_LENGTH
-                place, seal = place + start, block[start:end]
-                block = block[: end - _DIGITS] + _BLANK + block[end:]
-            elif not seal:  # it may begin where this block ends
-                cut = max(0, len(block) - len(_SEAL))
-                block, overlap = block[:cut], block[cut:]
-                place += cut
-            total.update(block)
-        total.update(overlap)
-    return place, seal, total.hexdigest().encode()
+    with (
+        writing.replacing(path) as temporary,
+        netCDF4.Dataset(temporary, "w", format="NETCDF4") as file,
+    ):
+        # Values that nobody writes would be filled first, at the cost of a second pass.
+        file.set_fill_off()
+        yield file
 
 
 def read_case(path: Path | str) -> tuple[dict[str, str | float], Record]:
@@ -355,13 +291,12 @@ def read_case(path: Path | str) -> tuple[dict[str, str | float], Record]:
     Raises
     ------
     InputError
-        If there is no such file, or it is damaged.
+        If there is no such file, or it is not NetCDF.
     """
-    path = Path(path)
-    if not is_whole(path):
-        raise InputError(f"{path}: missing or damaged; allowed is a case file as it was written")
-    with netCDF4.Dataset(path) as file:
-        file.set_auto_mask(False)
-        columns = {name: np.asarray(variable[...]) for name, variable in file.variables.items()}
-        del columns["seal"]
-        return file.__dict__, columns
+    try:
+        with netCDF4.Dataset(path) as file:
+            file.set_auto_mask(False)
+            columns = {name: np.asarray(variable[...]) for name, variable in file.variables.items()}
+            return file.__dict__, columns
+    except (OSError, RuntimeError):
+        raise InputError(f"{path}: missing or damaged; allowed is a case file") from None

@@ -2,12 +2,12 @@
 
 `resonance.nc` holds every scalar of a case file, `bifurcation.nc` every extremum and stroboscopic
 point. A cell without a case (the more damped variant has a range of its own) is not-a-number, and
-its status ``not_computed``. Runs for time courses that lie off the grid are in their case files
-only. `open_dataset` reads either.
+its status ``not_computed``. Runs for time courses that are not on the grid are in their case files
+only. In the files `variant` is a number with the names beside it, as CF wants it; `open_dataset`
+reads either file with the names as the index.
 """
 
 import contextlib
-import itertools
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
@@ -18,21 +18,24 @@ import xarray as xr
 
 from gearmesh.data import batches, casefile
 from gearmesh.data.batches import Content
-from gearmesh.data.casefile import FIELDS, Field
+from gearmesh.data.casefile import FIELDS, MISSING, Field
 from gearmesh.errors import InputError
 from gearmesh.model.variants import Variant
 from gearmesh.study.cases import Study
 
-NOT_COMPUTED = -1
-"""Status of a cell without a case, and what stands there for a count."""
+_FLAGS_OF_NO_CASE = {"status": {MISSING: "not_computed"}, "extremum_kind": {0: "none"}}
+NAMES = "variant_name"
+"""The variable with the names of the variants."""
 
-_FLAGS_OF_NO_CASE = {"status": {NOT_COMPUTED: "not_computed"}, "extremum_kind": {0: "none"}}
 _LABELS = (
-    ("letter", "letter of Tab. 1: which powers of the velocity damp"),
-    ("symbol", "where the damping acts"),
-    ("marker", "marker of Tab. 1"),
+    ("name", NAMES, "name of the damping variant"),
+    ("letter", "letter", "letter of Tab. 1: which powers of the velocity damp"),
+    ("symbol", "symbol", "where the damping acts"),
+    ("marker", "marker", "marker of Tab. 1"),
 )
-_COORDINATES = " ".join(("damping_factor", *(name for name, _ in _LABELS)))
+"""Attribute of a variant, variable, and what it is."""
+
+_COORDINATES = " ".join(("damping_factor", *(name for _, name, _ in _LABELS)))
 _BLOCK = 512
 """Frequencies that are written at a time, which bounds the memory whatever their number."""
 
@@ -40,18 +43,21 @@ _COMPRESSED = {"compression": "zlib", "complevel": 1, "shuffle": True}
 
 
 def open_dataset(path: Path | str) -> xr.Dataset:
-    """Open a dataset and load it.
+    """Open a dataset or a case file and load it; variants are selected by name.
 
     Raises
     ------
     InputError
         If it is missing or damaged.
     """
-    path = Path(path)
-    if not casefile.is_whole(path):
-        raise InputError(f"{path}: missing or damaged; delete it and run again")
-    with xr.open_dataset(path) as dataset:
-        return dataset.load().drop_vars("seal")
+    try:
+        with xr.open_dataset(path, engine="netcdf4") as dataset:
+            found = dataset.load()
+    except (OSError, ValueError, RuntimeError):
+        raise InputError(f"{path}: missing or damaged; delete it and run again") from None
+    if NAMES not in found.variables:
+        return found
+    return found.set_index(variant=NAMES)
 
 
 def write_datasets(
@@ -64,7 +70,8 @@ def write_datasets(
     study : Study
         The study; it sets the variants, the frequencies and y_st.
     batch_files : sequence of Path
-        All its batches, in their order. One of them at a time is in memory.
+        All its batches, which hold a variant each in one piece, by ascending frequency. One of
+        them at a time is in memory.
     resonance, bifurcation : Path
         Files to write.
     """
@@ -95,36 +102,35 @@ def write_datasets(
 def _created(
     path: Path, study: Study, title: str, sizes: Mapping[str, int]
 ) -> Iterator[netCDF4.Dataset]:
-    stated = {
-        "Conventions": "CF-1.11",
-        "title": f"{study.title}: {title}",
-        **casefile.common_attributes(study.pair),
-    }
-    made_of = casefile.recipe(stated | sizes)
-    with casefile.sealed(path, made_of) as file:
+    with casefile.created(path) as file:
         # A chunk may reach beyond the last frequency: what stands there must not be left to chance.
         file.set_fill_on()
-        file.setncatts(stated)
+        file.setncatts(
+            {
+                "Conventions": "CF-1.11",
+                "title": f"{study.title}: {title}",
+                "history": f"gearmesh: put together from all cases of the study {study.name}",
+                **casefile.common_attributes(study.pair),
+            }
+        )
         for name, size in sizes.items():
             file.createDimension(name, size)
         yield file
 
 
 def _write_coordinates(file: netCDF4.Dataset, variants: Sequence[Variant], nu: np.ndarray) -> None:
-    columns = {"variant": ("name of the damping variant", [v.name for v in variants])}
-    columns |= {
-        name: (long_name, [getattr(variant, name) for variant in variants])
-        for name, long_name in _LABELS
-    }
-    for name, (long_name, texts) in columns.items():
+    numbers = {row: variant.name for row, variant in enumerate(variants)}
+    index = Field("variant", "", "1", "number of the damping variant", "i4", numbers)
+    casefile.define(file, index, index.name, ("variant",))[:] = list(numbers)
+    for attribute, name, long_name in _LABELS:
         labels = file.createVariable(name, str, ("variant",))
-        labels.setncatts({"units": "1", "long_name": long_name})
-        labels[:] = np.array(texts, object)
+        labels.setncatts({"long_name": long_name})
+        labels[:] = np.array([getattr(variant, attribute) for variant in variants], object)
     factor = Field("damping_factor", "", "1", "multiple of the printed damping")
     factors = casefile.define(file, factor, factor.name, ("variant",))
     factors[:] = [variant.factor for variant in variants]
-    tuning = Field("nu", "", "1", "tuning nu_s of the mesh frequency")
-    casefile.define(file, tuning, tuning.name, ("nu",))[:] = nu
+    frequency = Field("nu", "", "1", "mesh frequency nu_s, in units of Omega_s")
+    casefile.define(file, frequency, frequency.name, ("nu",))[:] = nu
 
 
 def _define(file: netCDF4.Dataset, field: Field) -> None:
@@ -132,14 +138,10 @@ def _define(file: netCDF4.Dataset, field: Field) -> None:
     dimensions = ("variant", "nu", *([field.dimension] if field.dimension else []))
     sizes = [file.dimensions[name].size for name in dimensions]
     chunk = (1, min(sizes[1], _BLOCK), *sizes[2:])
-    counts = field.kind != "f8" and field.name not in _FLAGS_OF_NO_CASE
     flags = {**(field.flags or {}), **_FLAGS_OF_NO_CASE.get(field.name, {})}
-    field = replace(field, flags=flags)
+    field = replace(field, flags=flags, fill=np.nan if field.kind == "f8" else field.fill)
     for name in filter(None, (field.name, field.relative)):
-        fill = NOT_COMPUTED if counts else None
-        variable = casefile.define(
-            file, field, name, dimensions, fill, chunksizes=chunk, **_COMPRESSED
-        )
+        variable = casefile.define(file, field, name, dimensions, chunksizes=chunk, **_COMPRESSED)
         variable.coordinates = _COORDINATES
         # Every chunk is written whole and once; megabytes of them for each variable would stay.
         variable.set_var_chunk_cache(size=1)
@@ -162,23 +164,15 @@ def _store(
 def _by_block(batch_files: Iterable[Path], nu: np.ndarray) -> Iterator[tuple[str, int, Content]]:
     """Yield variant, start of a block of frequencies, and the cases in it.
 
-    Batches hold the cases variant by variant, by ascending frequency. A block is a chunk of the
-    file, so that each chunk is written once, whatever the batches.
+    A block is a chunk of the files, so that each chunk is written once.
     """
-    pieces = (piece for file in batch_files for piece in batches.read_batch(file).split())
-    for name, group in itertools.groupby(pieces, key=lambda piece: piece.variants[0]):
-        following = iter(group)
-        waiting = next(following)
-        for start in range(0, nu.size, _BLOCK):
-            last = nu[start : start + _BLOCK][-1]
-            while waiting.nu.size == 0 or waiting.nu[-1] < last:
-                more = next(following, None)
-                if more is None:
-                    break
-                waiting = batches.join([waiting, more])
-            end = int(np.searchsorted(waiting.nu, last, side="right"))
-            yield name, start, waiting.part(0, end)
-            waiting = waiting.part(end, waiting.nu.size)
+    for file in batch_files:
+        for content in batches.read_batch(file).split():
+            for start in range(0, nu.size, _BLOCK):
+                block = nu[start : start + _BLOCK]
+                first = int(np.searchsorted(content.nu, block[0]))
+                last = int(np.searchsorted(content.nu, block[-1], side="right"))
+                yield content.variants[0], start, content.part(first, last)
 
 
 def _cells(field: Field, content: Content, nu: np.ndarray, longest: int) -> np.ndarray:
@@ -197,4 +191,4 @@ def _cells(field: Field, content: Content, nu: np.ndarray, longest: int) -> np.n
 def _absent(field: Field) -> float:
     if field.kind == "f8":
         return np.nan
-    return 0 if field.name == "extremum_kind" else NOT_COMPUTED
+    return 0 if field.name == "extremum_kind" else MISSING

@@ -1,5 +1,6 @@
-"""Every place that others rely on, once; all relative to the project's root."""
+"""Where everything is, relative to the project's root: committed files, and a study's results."""
 
+from dataclasses import dataclass
 from pathlib import Path
 
 CONFIG = Path("config")
@@ -7,20 +8,8 @@ PAPER = CONFIG / "paper.yaml"
 SMOKE = CONFIG / "smoke.yaml"
 CLAIMS = CONFIG / "claims.yaml"
 NOTEBOOKS = Path("notebooks")
-
+CAPTIONS = Path("workflow/report")
 RESULTS = Path("results")
-CASES = RESULTS / "cases"
-BATCHES = RESULTS / "batches"
-DATASETS = RESULTS / "datasets"
-RESONANCE = DATASETS / "resonance.nc"
-BIFURCATION = DATASETS / "bifurcation.nc"
-THRESHOLDS = DATASETS / "thresholds.json"
-FIGURES = RESULTS / "figures"
-EXECUTED_NOTEBOOKS = RESULTS / "notebooks"
-CHECKS = RESULTS / "checks"
-LEDGER = RESULTS / "claims.json"
-VERDICT = RESULTS / "verdict.txt"
-REPORT = RESULTS / "report" / "index.html"
 
 FIGURE_NAMES = tuple(f"fig{number}" for number in range(1, 8))
 """All figures; the first is a drawing, the others come from the notebook of their name."""
@@ -41,19 +30,9 @@ def nu_label(nu: float) -> str:
     return f"{whole}.{decimals.rstrip('0'):0<4}"
 
 
-def case_file(variant: str, nu: float) -> Path:
-    """Return the file of one case, such as ``results/cases/c-material/nu-0.6600.nc``."""
-    return CASES / variant / f"nu-{nu_label(nu)}.nc"
-
-
-def batch_file(name: str) -> Path:
-    """Return the file that hands the cases of one job on to the datasets."""
-    return BATCHES / f"{name}.nc"
-
-
-def figure_files(name: str) -> tuple[Path, Path]:
-    """Return the PNG and the SVG file of a figure."""
-    return FIGURES / f"{name}.png", FIGURES / f"{name}.svg"
+def case_name(variant: str, nu: float | str) -> str:
+    """Return the file of a case below the folder of cases: ``c-material/nu-0.6600.nc``."""
+    return f"{variant}/nu-{nu if isinstance(nu, str) else nu_label(nu)}.nc"
 
 
 def notebook(name: str) -> Path:
@@ -61,16 +40,112 @@ def notebook(name: str) -> Path:
     return NOTEBOOKS / f"{name}.ipynb"
 
 
-def executed_notebook(name: str) -> Path:
-    """Return a notebook's executed copy."""
-    return EXECUTED_NOTEBOOKS / f"{name}.ipynb"
+@dataclass(frozen=True)
+class Places:
+    """The results of one study, all in one folder.
 
+    Names may be wildcards of Snakemake: ``places.batch("{letter}")``.
 
-def notebook_page(name: str) -> Path:
-    """Return a notebook's executed copy as a page of the report."""
-    return REPORT.parent / "notebooks" / f"{name}.html"
+    Attributes
+    ----------
+    study : str
+        Name of the study.
+    """
 
+    study: str
 
-def check_file(name: str) -> Path:
-    """Return the results of the checks that a notebook makes."""
-    return CHECKS / f"{name}.json"
+    @property
+    def folder(self) -> Path:
+        """The folder, ``results/paper``."""
+        return RESULTS / self.study
+
+    @property
+    def cases(self) -> Path:
+        """Folder of the case files."""
+        return self.folder / "cases"
+
+    @property
+    def resonance(self) -> Path:
+        """Every scalar of the cases over (variant, nu)."""
+        return self.folder / "datasets" / "resonance.nc"
+
+    @property
+    def bifurcation(self) -> Path:
+        """Every extremum and stroboscopic point over (variant, nu)."""
+        return self.folder / "datasets" / "bifurcation.nc"
+
+    @property
+    def thresholds(self) -> Path:
+        """Thresholds, located by refinement in ν_s."""
+        return self.folder / "datasets" / "thresholds.json"
+
+    @property
+    def ledger(self) -> Path:
+        """All checked claims."""
+        return self.folder / "claims.json"
+
+    @property
+    def verdict(self) -> Path:
+        """A line for each figure, and the count of claims."""
+        return self.folder / "verdict.txt"
+
+    @property
+    def report(self) -> Path:
+        """The report page."""
+        return self.folder / "report" / "index.html"
+
+    @property
+    def hashes(self) -> Path:
+        """The SHA-256 of all results."""
+        return self.folder / "manifest.sha256"
+
+    @property
+    def as_expected(self) -> Path:
+        """A line that is there if all claims have the statuses that the ledger expects."""
+        return self.folder / "checks" / "as_expected.txt"
+
+    @property
+    def again(self) -> Path:
+        """Input of all jobs whose manifest does not hold; newer than everything, so they run."""
+        return self.folder / ".again"
+
+    @property
+    def scratch(self) -> Path:
+        """Folder of temporary files, which every run empties."""
+        return self.folder / ".scratch"
+
+    def case(self, variant: str, nu: float | str) -> Path:
+        """Return the file of one case."""
+        return self.cases / case_name(variant, nu)
+
+    def batch(self, letter: str) -> Path:
+        """Return the file that hands the cases of a letter of Tab. 1 on to the datasets."""
+        return self.folder / "batches" / f"{letter}.nc"
+
+    def figure_files(self, name: str) -> tuple[Path, Path]:
+        """Return the PNG and the SVG file of a figure."""
+        return self.folder / "figures" / f"{name}.png", self.folder / "figures" / f"{name}.svg"
+
+    def executed_notebook(self, name: str) -> Path:
+        """Return a notebook's executed copy."""
+        return self.folder / "notebooks" / f"{name}.ipynb"
+
+    def notebook_page(self, name: str) -> Path:
+        """Return a notebook's executed copy as a page of the report."""
+        return self.report.parent / "notebooks" / f"{name}.html"
+
+    def check(self, name: str) -> Path:
+        """Return the checked claims of a figure."""
+        return self.folder / "checks" / f"{name}.json"
+
+    def manifest(self, job: str) -> Path:
+        """Return the hashes of the files that a job wrote and read."""
+        return self.folder / "manifests" / f"{job}.sha256"
+
+    def log(self, job: str) -> Path:
+        """Return what a job printed."""
+        return self.folder / "logs" / f"{job}.log"
+
+    def benchmark(self, job: str) -> Path:
+        """Return the time and the memory that a job took, as Snakemake measured them."""
+        return self.folder / "benchmarks" / f"{job}.tsv"

@@ -8,6 +8,9 @@ from pathlib import Path
 
 from gearmesh.errors import InputError
 
+PARTIAL = ".part"
+"""How the names of files end that are being written; all begin with a dot."""
+
 _LITTLE_SPACE = 2**20
 
 
@@ -22,7 +25,7 @@ def replacing(path: Path) -> Iterator[Path]:
     InputError
         If the file cannot be written: one line that says why.
     """
-    temporary = path.with_name(f".{path.name}.{os.getpid()}")
+    temporary = path.with_name(f".{path.name}.{os.getpid()}{PARTIAL}")
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
         yield temporary
@@ -32,6 +35,12 @@ def replacing(path: Path) -> Iterator[Path]:
     finally:
         with contextlib.suppress(OSError):
             temporary.unlink()
+
+
+def remove_partial(folder: Path) -> None:
+    """Remove what processes that were killed left half written below a folder."""
+    for file in folder.rglob(f".*{PARTIAL}"):
+        file.unlink(missing_ok=True)
 
 
 def write_text(path: Path, text: str) -> None:

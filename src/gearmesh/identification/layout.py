@@ -3,31 +3,55 @@
 from pathlib import Path
 
 from gearmesh.data import paths
+from gearmesh.data.paths import Places
 from gearmesh.identification.settings import Settings
 
 SETTINGS = paths.CONFIG / "identify.yaml"
-FOLDER = paths.RESULTS / "identification"
-DATASET = paths.DATASETS / "identification.nc"
-FOUND = FOLDER / "identified.yaml"
-NOTEBOOK = paths.EXECUTED_NOTEBOOKS / "identification.ipynb"
-FIGURES = FOLDER / "figures"
 FIGURE_NAMES = ("regions", "supports", "sensitivity")
 
-REPORTED = {name: paths.REPORT.parent / name for name in ("regions", "sensitivity")}
-"""Figures that the report draws from the committed table, without suffix."""
-
 IDENTIFIED = paths.CONFIG / "identified.yaml"
-"""The committed copy of `FOUND`, which the report reads."""
+"""The committed copy of `found`, which the report reads."""
 
 
-def batch_file(design: str, index: int) -> Path:
-    """Return the file of a batch of samples."""
-    return FOLDER / design / f"batch-{index:03d}.nc"
+def folder(places: Places) -> Path:
+    """Return the folder of the identification."""
+    return places.folder / "identification"
 
 
-def box_file(design: str) -> Path:
+def dataset(places: Places) -> Path:
+    """Return the file with all samples."""
+    return places.folder / "datasets" / "identification.nc"
+
+
+def found(places: Places) -> Path:
+    """Return the file with the findings."""
+    return folder(places) / "identified.yaml"
+
+
+def figures(places: Places) -> Path:
+    """Return the folder of the figures that the notebook draws."""
+    return folder(places) / "figures"
+
+
+def figure_files(places: Places) -> list[Path]:
+    """Return the figures that the notebook draws."""
+    return [figures(places) / f"{name}{end}" for name in FIGURE_NAMES for end in (".png", ".svg")]
+
+
+def reported(places: Places) -> dict[str, Path]:
+    """Return figures that the report draws from the committed table, without suffix."""
+    return {name: places.report.parent / name for name in ("regions", "sensitivity")}
+
+
+def batch_file(places: Places, design: str, index: int | str) -> Path:
+    """Return the file of a batch of samples; names may be wildcards."""
+    number = index if isinstance(index, str) else f"{index:03d}"
+    return folder(places) / design / f"batch-{number}.nc"
+
+
+def box_file(places: Places, design: str) -> Path:
     """Return the file with the box that a focused design fills."""
-    return FOLDER / design / "box.nc"
+    return folder(places) / design / "box.nc"
 
 
 def batch_count(settings: Settings, design: str) -> int:
@@ -36,10 +60,10 @@ def batch_count(settings: Settings, design: str) -> int:
     return -(-stated.points // stated.points_per_job)
 
 
-def batch_files(settings: Settings, *designs: str) -> list[str]:
+def batch_files(places: Places, settings: Settings, *designs: str) -> list[Path]:
     """Return the files of all batches of some designs."""
     return [
-        str(batch_file(design, index))
+        batch_file(places, design, index)
         for design in designs
         for index in range(batch_count(settings, design))
     ]

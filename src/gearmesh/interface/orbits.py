@@ -106,11 +106,13 @@ class Orbit:
         dataset = _lengths(lengths, self.pair)
         time = course.time / self.pair.natural_frequency
         dataset = dataset.assign_coords(time=("time", time, {"units": "s", "long_name": "time"}))
-        regimes = " ".join(_REGIMES[flag] for flag in (1, 0, -1))
-        stated: dict[str, Any] = {"units": "1", "long_name": "regime of the mesh"}
-        stated["flag_meanings"] = regimes
-        stated["flag_values"] = np.array([1, 0, -1], np.int8)
-        dataset["regime"] = ("time", course.regime, stated)
+        flags = {
+            "units": "1",
+            "long_name": "regime of the mesh",
+            "flag_values": np.array(list(_REGIMES), np.int8),
+            "flag_meanings": " ".join(_REGIMES.values()),
+        }
+        dataset["regime"] = ("time", course.regime, flags)
         for name, value, what in (
             ("stable", self.stable, "whether the orbit is stable"),
             ("neutral", self.neutral, "whether no damping acts along the orbit"),

@@ -1,35 +1,39 @@
-"""What the Snakefile asks of a study: its files, its batches, and what each stage depends on."""
+"""What the Snakefile asks of a study: where its results go, and what each job is made of.
+
+A job runs again when its manifest does not hold: when a file that it wrote or read is missing or
+was changed, or when it was made of something else. The manifests are checked when Snakemake starts
+(`Plan.holding`), so neither the times of files nor Snakemake's own records matter.
+"""
 
 import hashlib
+import os
 import shlex
 import sys
-from collections.abc import Container, Mapping, Sequence
+import time
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
 
-from gearmesh.data import batches, casefile, paths, provenance
-from gearmesh.data.batches import Batch
+from gearmesh.data import batches, casefile, manifest, paths, provenance
+from gearmesh.data.paths import Places
 from gearmesh.errors import InputError
 from gearmesh.identification import layout
-from gearmesh.pipeline.job import tell
-from gearmesh.reproduction.claims import Claim
+from gearmesh.identification.design import left_alone, stated
+from gearmesh.identification.settings import Settings, load_settings
+from gearmesh.pipeline import locks
+from gearmesh.pipeline.messages import say
+from gearmesh.pipeline.stages import STAGES, job_name
+from gearmesh.reproduction.claims import Claim, load_ledger
 from gearmesh.study.cases import Case, Study
 from gearmesh.study.loading import load_study
 
-SCRIPTS = Path("workflow/scripts")
-_SETTINGS = ("study",)
-_LOOKS = (
-    *("-l", "-S", "-D", "-t", "--lint", "--list", "--lt", "--lc", "--li", "--lp", "--lu", "--cm"),
-    *("--summary", "--detailed-summary", "--dag", "--rulegraph", "--filegraph", "--d3dag"),
-    *("--unlock", "--report", "--archive", "--touch", "--containerize", "--export-cwl"),
-    *("--generate-unit-tests", "--print-compilation", "--deploy-sources"),
-)
-_LOOKS_BEGIN = ("--list-", "--cleanup-", "--delete-", "--conda-c", "--container-cleanup-")
-"""Options of Snakemake with which it runs no job, and how others of that kind begin."""
+_TEMPLATES = provenance.PACKAGE / "report" / "templates"
+_STYLE = provenance.PACKAGE / "reproduction" / "figures" / "gearmesh.mplstyle"
 
-_RECORDS = (Path(".snakemake/metadata"), Path(".snakemake/incomplete"))
-"""Where Snakemake keeps what it knows of files, and of those that are being made."""
+
+_FAR_FUTURE = 2**32 - 1
+"""A time that no result has, in seconds: the year 2106."""
 
 
 @dataclass(frozen=True)
@@ -38,228 +42,249 @@ class Plan:
 
     Attributes
     ----------
-    config : Path
-        Its configuration file.
     study : Study
-        What stands in it.
+        What its file states.
+    main : bool
+        Whether this process plans the run; jobs on a cluster load the Snakefile too.
     """
 
-    config: Path
     study: Study
+    main: bool = True
 
     @cached_property
-    def cases(self) -> tuple[Case, ...]:
-        """All cases."""
-        return tuple(self.study.cases)
+    def places(self) -> Places:
+        """Where its results go."""
+        return Places(self.study.name)
 
     @cached_property
-    def batches(self) -> list[Batch]:
-        """The batches in which they are computed."""
-        return batches.partition(self.cases, 1400)
+    def letters(self) -> dict[str, list[Case]]:
+        """The cases of each letter of Tab. 1."""
+        return batches.by_letter(self.study.cases)
 
     @cached_property
-    def recipe(self) -> str:
-        """What all cases depend on besides variant and frequency: parameters and versions."""
-        return _digest((self.study.pair.digest(), provenance.versions()))
+    def ledger(self) -> list[Claim]:
+        """The claims that the study is checked against; a study of one's own has none."""
+        return load_ledger(self.study.claims) if self.study.claims else []
 
     @cached_property
-    def grid(self) -> str:
-        """What the datasets depend on besides the batches: their title and their axes."""
-        plan = [(variant.name, nus) for variant, nus in self.study.plan.frequencies()]
-        return _digest((self.study.title, plan))
+    def designs(self) -> Settings:
+        """The designs of the identification."""
+        return load_settings(layout.SETTINGS)
 
     @cached_property
-    def variants(self) -> str:
-        """The names of all variants."""
-        return " ".join(variant.name for variant, _ in self.study.plan.frequencies())
+    def pair(self) -> dict[str, str | float]:
+        """What all cases share: parameters, solver, versions."""
+        return casefile.common_attributes(self.study.pair)
 
-    @cached_property
-    def stated(self) -> str:
-        """All that the configuration states, reasons and title too: what the report depends on."""
-        return _digest((self.study.pair.parameters, self.study.plan.model_dump_json()))
-
-    def has_file(self, case: Case) -> bool:
-        """Tell whether a case has a file of its own; one with a time course always has."""
-        return self.study.plan.case_files or case.time_course
-
-    def time_courses(self, variants: Sequence[str]) -> list[str]:
-        """Return the batch files whose cases have time courses of some variants."""
-        return [
-            self.batch_file(batch)
-            for batch in self.batches
-            if any(case.time_course and case.variant.name in variants for case in batch.cases)
-        ]
-
-    def members(self, batch: Batch) -> str:
-        """Return what a batch depends on besides the recipe: which cases are in it."""
-        return _digest([(c.variant.name, c.nu, c.time_course) for c in batch.cases])
-
-    def batch_file(self, batch: Batch) -> str:
-        """Return the file of a batch."""
-        return str(paths.batch_file(batch.name))
-
-    @cached_property
-    def batch_files(self) -> list[str]:
-        """The files of all batches."""
-        return [self.batch_file(batch) for batch in self.batches]
-
-    def look(self, asked: Container[str], only_tell: bool) -> dict[int, list[str]]:
-        """Look at every file that carries a seal; delete what is not as it was written.
+    def made_of(self, stage: str, *arguments: str) -> str:
+        """Return the digest of all that a job is made of besides files of results.
 
         Parameters
         ----------
-        asked : container of str
-            Files that the command line asks for.
-        only_tell : bool
-            Name what is to be made again, but let it be.
-
-        Returns
-        -------
-        dict of int to list of str
-            The case files of each batch, by its index, that Snakemake has to know of: those that
-            are asked for, and the first that lacks, with which come all others.
+        stage : str
+            One of `gearmesh.pipeline.stages.STAGES`.
+        *arguments : str
+            Which of its jobs.
         """
-        for file in (paths.RESONANCE, paths.BIFURCATION, *self.batch_files):
-            if Path(file).exists() and not casefile.is_whole(Path(file)):
-                _drop(file, "damaged", only_tell)
-        if not any(any(folder.glob("*")) for folder in _RECORDS):
-            self._distrust(only_tell)
-        known = {}
-        for batch in self.batches:
-            files = {
-                str(paths.case_file(case.variant.name, case.nu)): case
-                for case in batch.cases
-                if self.has_file(case)
-            }
-            lacking = self._lacking(batch, files, only_tell)[:1]
-            named = [file for file in files if file in asked and file not in lacking]
-            known[batch.index] = lacking + named
-        return known
+        function = STAGES[stage]
+        module = Path(function.__code__.co_filename)
+        files, unused = _files(stage, *arguments)
+        code = provenance.code_digest(module, stage, *files, leaving_out=unused)
+        facts = _FACTS[stage](self, *arguments) if stage in _FACTS else ()
+        return hashlib.sha256(repr((code, facts)).encode()).hexdigest()
 
-    def _lacking(self, batch: Batch, files: Mapping[str, Case], only_tell: bool) -> list[str]:
-        """Return the case files of a batch that are not there, or not as this study makes them."""
-        parameters = self.study.pair
-        lacking, others = [], []
-        for file, case in files.items():
-            path = Path(file)
-            if casefile.is_whole(path, casefile.recipe(casefile.attributes(parameters, case))):
-                continue
-            if casefile.is_whole(path):
-                others.append(file)
-                continue
-            if path.exists():
-                _drop(file, "damaged", only_tell)
-            lacking.append(file)
-        # Files of other parameters beside a batch file of these: another study ran in between.
-        # Where the batch file is out of date too, its job runs anyway and keeps what it can.
-        if others and self._is_current(batch):
-            for file in others:
-                _drop(file, "of another study", only_tell)
-            lacking += others
-        return lacking
+    def again(self, stage: str, *arguments: str) -> list[Path]:
+        """Return the input that makes a job run again, nothing while its manifest holds."""
+        if self.holding is None or job_name(stage, *arguments) in self.holding:
+            return []
+        return [self.places.again]
 
-    def _distrust(self, only_tell: bool) -> None:
-        """Delete what may be of other parameters, where Snakemake's records of them are gone.
+    @cached_property
+    def holding(self) -> frozenset[str] | None:
+        """The jobs whose manifest holds, None if this is not the process or the time to ask.
 
-        Without a record Snakemake takes a file for what is wanted. Case files and batch files say
-        themselves what they are; all else follows from the files that are named here, or is one of
-        the samples of the identification.
+        The reasons why other manifests do not hold are printed.
+
+        Raises
+        ------
+        InputError
+            If the folder of results cannot be written.
         """
-        outdated = [self.batch_file(batch) for batch in self.batches if not self._is_current(batch)]
-        samples = layout.FOLDER.glob("*/*.nc")
-        first = (paths.RESONANCE, paths.THRESHOLDS, paths.check_file("printed"))
-        for file in (*outdated, *first, *samples):
-            if Path(file).exists():
-                _drop(file, "without a record of its parameters", only_tell)
+        if not self.main:
+            return None
+        with locks.alone(self.places) as undisturbed:
+            if not undisturbed:  # `locks.begin_run` will say so
+                return None
+            hashes = manifest.Hashes(self.places.folder)
+            reasons: dict[str, list[str]] = {}
+            for file in sorted(self.places.manifest("x").parent.glob("*.sha256")):
+                reasons.setdefault(self._why(file, hashes), []).append(file.stem)
+        holding = reasons.pop("", [])
+        for why, jobs in reasons.items():
+            say(f"{why}; to be made again: {', '.join(jobs)}")
+        # Its content is new too, for Snakemake compares the checksums of small files.
+        self.places.again.write_text(str(time.time_ns()))
+        os.utime(self.places.again, (_FAR_FUTURE, _FAR_FUTURE))
+        return frozenset(holding)
 
-    def _is_current(self, batch: Batch) -> bool:
-        wanted = casefile.recipe(batches.attributes(self.study.pair, batch))
-        return casefile.is_whole(Path(self.batch_file(batch)), wanted)
+    def _why(self, file: Path, hashes: manifest.Hashes) -> str:
+        """Return why a job has to run again, nothing if its manifest holds."""
+        held = manifest.read(file)
+        stage, *arguments = file.stem.split("-")
+        if held is None or held.made_of != self._made_of(stage, arguments):
+            return "other parameters or code"
+        faults = _faults(held.written, hashes) | _faults(held.read, hashes)
+        faults |= {name: "not of this study" for name in self._foreign(held, arguments)}
+        return _named(self.places, faults) if faults else ""
+
+    def _made_of(self, stage: str, arguments: Sequence[str]) -> str | None:
+        """Return what a job is made of, None if this study has no such job."""
+        try:
+            return self.made_of(stage, *arguments)
+        except (KeyError, TypeError):
+            return None
+
+    def _foreign(self, found: manifest.Manifest, arguments: Sequence[str]) -> list[str]:
+        """Return case files that none of the study's jobs has written."""
+        if len(arguments) != 1 or arguments[0] not in self.letters:
+            return []
+        there = self.places.cases.glob(f"{arguments[0]}-*/*")
+        names = (path.relative_to(self.places.folder).as_posix() for path in there)
+        return sorted({*names} - found.written.keys())
 
 
-def only_looks(arguments: Sequence[str]) -> bool:
-    """Tell whether a command line asks Snakemake for something else than to run jobs.
+def _faults(recorded: Mapping[str, str], hashes: manifest.Hashes) -> dict[str, str]:
+    """Return what is wrong with files, by their names."""
+    return {
+        name: "missing" if digest is None else "damaged"
+        for name, digest in hashes.of(recorded).items()
+        if digest != recorded[name]
+    }
 
-    Snakemake reads the Snakefile for all of them alike, and says only later what it is asked.
+
+def _named(places: Places, faults: Mapping[str, str]) -> str:
+    """Write the first of some files, what is wrong with it, and how many others there are."""
+    first, *others = faults
+    more = f" (and {len(others)} more)" if others else ""
+    return f"{places.folder / first}{more}: {faults[first]}"
+
+
+def _files(stage: str, *arguments: str) -> tuple[list[Path], list[Path]]:
+    """Return committed files that a job uses, and modules that it imports but does not use.
+
+    `gearmesh.reproduction.claims.checking` imports the checks of all figures; a figure depends on
+    its own, and on what these import.
     """
-    options = [argument.split("=")[0] for argument in arguments]
-    return any(option in _LOOKS or option.startswith(_LOOKS_BEGIN) for option in options)
+    if stage == "figure" or stage == "printed":
+        [figure] = arguments or ["printed"]
+        own = provenance.module(f"reproduction/claims/{figure}")
+        checks = {provenance.module(f"reproduction/claims/{name}") for name in paths.CHECKED}
+        files = [paths.notebook(figure), _STYLE, _TEMPLATES / "claims.html.j2"]
+        return files if arguments else [], [*checks - {own, *provenance.sources(own)}]
+    return _COMMITTED.get(stage, list)(), []
 
 
-def _drop(file: Path | str, why: str, only_tell: bool) -> None:
-    tell(f"{file}: {why}, to be made again")
-    if not only_tell:
-        Path(file).unlink()
+def _templates() -> list[Path]:
+    return sorted(_TEMPLATES.iterdir())
 
 
-def load(config: Mapping[str, object], configfiles: Sequence[Path | str]) -> Plan:
+_COMMITTED: dict[str, Callable[[], list[Path]]] = {
+    "fig1": lambda: [_STYLE],
+    "identified_figures": lambda: [_STYLE, layout.IDENTIFIED, layout.SETTINGS],
+    "study_figures": lambda: [_STYLE],
+    "notebook_pages": lambda: [_TEMPLATES / "notebook.html.j2", _TEMPLATES / "report.css"],
+    "report": lambda: [
+        *_templates(),
+        *(paths.CAPTIONS / f"{name}.rst" for name in paths.FIGURE_NAMES),
+        *(layout.IDENTIFIED, layout.SETTINGS, paths.CLAIMS),
+    ],
+    "study_report": _templates,
+    "box": lambda: [paths.CLAIMS],
+    "identified": lambda: [layout.SETTINGS, paths.CLAIMS],
+    "identification_notebook": lambda: [
+        *(paths.notebook("identification"), layout.SETTINGS, paths.CLAIMS, _STYLE),
+        _TEMPLATES / "identification.html.j2",
+    ],
+}
+"""Committed files that a stage uses, besides code."""
+
+_FACTS: dict[str, Callable[..., object]] = {
+    "cases": lambda plan, letter: (
+        plan.pair,
+        [(case.variant.name, case.nu, case.time_course) for case in plan.letters[letter]],
+        plan.study.plan.case_files,
+    ),
+    "datasets": lambda plan: (plan.study.title, plan.pair, _grid(plan.study)),
+    "thresholds": lambda plan: (plan.pair, plan.study.variants),
+    "figure": lambda plan, name: (
+        *(plan.study.title, plan.pair, plan.study.time_courses),
+        _of_figure(plan.ledger, name),
+    ),
+    "identified_figures": lambda plan: sorted(stated(plan.study.pair).items()),
+    "printed": lambda plan: (plan.pair, _of_figure(plan.ledger, "printed")),
+    "ledger": lambda plan: plan.ledger,
+    "report": lambda plan: _statements(plan.study),
+    "study_report": lambda plan: _statements(plan.study),
+    "samples": lambda plan, design, index: (
+        left_alone(plan.designs.designs[design], plan.study.pair),
+        provenance.versions(),
+        plan.designs.sampling(design),
+    ),
+    "box": lambda plan, design: plan.designs.sampling(design),
+    "identification_notebook": lambda plan: plan.pair,
+}
+"""What a job depends on of the study, and of the settings of the identification."""
+
+
+def _grid(study: Study) -> list[tuple[str, Sequence[float]]]:
+    return [(variant.name, nus) for variant, nus in study.plan.frequencies()]
+
+
+def _of_figure(ledger: Iterable[Claim], figure: str) -> list[Claim]:
+    return [claim for claim in ledger if claim.figure == figure]
+
+
+def _statements(study: Study) -> tuple[object, ...]:
+    return study.name, study.pair.parameters, study.plan.model_dump_json()
+
+
+def load(
+    options: Mapping[str, object], configfiles: Sequence[Path | str], main: bool = True
+) -> Plan:
     """Load the study that a run of Snakemake asks for.
 
     Parameters
     ----------
-    config : mapping
-        Settings of the command line (``--config study=FILE``).
+    options : mapping
+        Settings of the command line, ``--config study=FILE``.
     configfiles : sequence
         Files of ``--configfile``, which names a study as well.
+    main : bool
+        See `Plan`.
 
     Raises
     ------
     InputError
         One line, if a setting or the study is wrong.
     """
-    if configfiles:
-        path = Path(configfiles[-1])
-    else:
-        for name in config:
-            if name not in _SETTINGS:
-                raise InputError(f"--config {name}: unknown; allowed is study=FILE")
-        path = Path(str(config.get("study", paths.PAPER)))
-    return Plan(path, load_study(path))
-
-
-def script(name: str) -> str:
-    """Return the file of a script of the pipeline."""
-    return str(SCRIPTS / f"{name}.py")
-
-
-def sources(*files: str) -> list[str]:
-    """Return files together with the modules that they import, relative to the project's root."""
-    found = [*map(Path, files), *provenance.sources(*files)]
-    return [_relative(file) for file in found]
-
-
-def checked_by(figure: str, *files: str) -> list[str]:
-    """Return files that check the claims of a figure, and what they import of it.
-
-    `gearmesh.reproduction.claims.checking` imports the checks of all figures; a figure depends on its
-    own, and on what these import.
-    """
-    checks = {provenance.module(f"reproduction/claims/{name}") for name in paths.CHECKED}
-    own = provenance.module(f"reproduction/claims/{figure}")
-    others = {_relative(check) for check in checks - {own, *provenance.sources(own)}}
-    return [file for file in sources(*files) if file not in others]
-
-
-def claims_digest(ledger: Sequence[Claim], figure: str) -> str:
-    """Return the digest of the claims that belong to a figure."""
-    return _digest([claim for claim in ledger if claim.figure == figure])
-
-
-def templates() -> list[str]:
-    """Return the templates of the report."""
-    return sorted(
-        _relative(file) for file in provenance.module("report/templates").with_suffix("").iterdir()
-    )
-
-
-def captions() -> list[str]:
-    """Return the captions of the figures."""
-    return [f"workflow/report/{name}.rst" for name in paths.FIGURE_NAMES]
-
-
-def _relative(file: Path) -> str:
-    root = Path.cwd()
-    return str(file.relative_to(root) if file.is_relative_to(root) else file)
+    for name in options:
+        if name != "study":
+            raise InputError(f"--config {name}: unknown; allowed is study=FILE")
+    if len(configfiles) + len(options) > 1:
+        raise InputError(
+            "--config study=FILE and --configfile FILE: found several studies; allowed is one"
+        )
+    [path] = [*configfiles, *options.values()] or [paths.PAPER]
+    if Path("src/gearmesh").resolve() != provenance.PACKAGE:
+        raise InputError(
+            f"the code would come from {provenance.PACKAGE}, not from this folder; "
+            "run 'make reproduce', which sets up an environment here"
+        )
+    plan = Plan(load_study(str(path)), main)
+    load_settings(layout.SETTINGS)  # a mistake in it, or in the ledger, is reported before all jobs
+    if plan.study.claims:
+        load_ledger(plan.study.claims)
+    return plan
 
 
 def prefix(plan: Plan) -> str:
@@ -269,8 +294,11 @@ def prefix(plan: Plan) -> str:
     of it: the logs are written through a pipe.
     """
     folder = shlex.quote(str(Path(sys.executable).parent))
-    return f"set -euo pipefail; export PATH={folder}:$PATH STUDY={shlex.quote(str(plan.config))}; "
+    study = shlex.quote(str(plan.study.path))
+    return f"set -euo pipefail; export PATH={folder}:$PATH STUDY={study}; unset NUMBA_DISABLE_JIT; "
 
 
-def _digest(stated: object) -> str:
-    return hashlib.sha256(repr(stated).encode()).hexdigest()
+def whole_path(place: Path) -> str:
+    """Return a place with the project's root before it; braces in the root are no wildcards."""
+    root = str(Path.cwd()).replace("{", "{{").replace("}", "}}")
+    return f"{root}/{place}"

@@ -153,6 +153,13 @@ class Study:
         return None if self.plan.claims is None else self.path.parent / self.plan.claims
 
     @property
+    def ledger(self) -> Path:
+        """The ledger of claims; the pipeline asks for it only if the study has one."""
+        if self.claims is None:
+            raise InputError(f"{self.path}: claims: missing; wanted is a ledger of claims")
+        return self.claims
+
+    @property
     def nu(self) -> np.ndarray:
         """Mesh frequencies ν_s of all variants, ascending, shape (n,)."""
         return np.array(self.plan.nu.all)

@@ -2,10 +2,10 @@
 
 A notebook or a rule needs these calls::
 
-    ledger = load_ledger(paths.CLAIMS)
+    ledger = load_ledger(study.claims)
     evidence = Evidence(pair=study.pair, thresholds=json.loads(...), time_courses={...})
-    entries = checking.check_figure("fig2", evidence, ledger, paths.check_file("fig2"))
-    print(verdict(collect(ledger, all_check_files, paths.LEDGER)))
+    entries = checking.check_figure("fig2", evidence, ledger, places.check("fig2"))
+    print(verdict(collect(ledger, all_check_files, places.ledger)))
 
 `gearmesh.reproduction.claims.ledger` holds claims, entries and the verdict; `printed` and `fig2` to
 `fig7` hold what is measured for each claim, and `checking` puts them together. The package

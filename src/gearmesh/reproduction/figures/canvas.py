@@ -12,6 +12,7 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 from matplotlib.ticker import FixedLocator, FuncFormatter
 
+from gearmesh.data.writing import replacing
 from gearmesh.reproduction.figures import palette
 
 STYLE = "gearmesh.reproduction.figures.gearmesh"
@@ -38,7 +39,7 @@ def styled(draw: Callable[..., Figure]) -> Callable[..., Figure]:
 
 
 def save(figure: Figure, path: Path | str) -> tuple[Path, Path]:
-    """Write `figure` as PNG and as SVG; the same figure gives the same bytes.
+    """Write `figure` as PNG and as SVG, whole or not at all; the same figure gives the same bytes.
 
     Parameters
     ----------
@@ -53,11 +54,12 @@ def save(figure: Figure, path: Path | str) -> tuple[Path, Path]:
         The PNG and the SVG file.
     """
     png, svg = (Path(f"{path}{suffix}") for suffix in (".png", ".svg"))
-    png.parent.mkdir(parents=True, exist_ok=True)
     with style.context(["default", STYLE]):
-        figure.savefig(png, metadata={"Software": None})
-        figure.set_layout_engine("none")  # the layout stands; finding it again would take as long
-        figure.savefig(svg, metadata={"Date": None, "Creator": None})
+        with replacing(png) as temporary:
+            figure.savefig(temporary, format="png", metadata={"Software": None})
+        figure.set_layout_engine("none")  # the layout is there; finding it again takes as long
+        with replacing(svg) as temporary:
+            figure.savefig(temporary, format="svg", metadata={"Date": None, "Creator": None})
     return png, svg
 
 

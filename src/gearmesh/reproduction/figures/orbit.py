@@ -82,7 +82,7 @@ def read_time_courses(
     courses = {}
     for name in variants:
         for nu in time_courses.get(name, ()):
-            case = open_dataset(Path(folder) / paths.case_file(name, nu).relative_to(paths.CASES))
+            case = open_dataset(Path(folder) / paths.case_name(name, nu))
             if case.sizes.get("sample"):
                 courses[name, nu] = case
     return courses

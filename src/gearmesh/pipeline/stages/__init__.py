@@ -1,0 +1,25 @@
+"""The jobs of the pipeline: each public function is a stage, and returns the files that it wrote.
+
+A stage imports within its body what it alone needs: a job starts quickly, and runs again only when
+something changes that it uses (`gearmesh.data.provenance.code_digest`).
+"""
+
+from gearmesh.pipeline.stages import cases, claims, datasets, figures, identify, report
+
+STAGES = {
+    stage.__name__: stage
+    for stage in (
+        *(cases.cases, cases.case, datasets.datasets, datasets.thresholds),
+        *(figures.fig1, figures.figure, figures.identified_figures, figures.study_figures),
+        *(claims.printed, claims.ledger, claims.verdict),
+        *(report.notebook_pages, report.report, report.study_report, report.hashes),
+        *(identify.samples, identify.box, identify.all_samples, identify.identified),
+        identify.identification_notebook,
+    )
+}
+"""All stages, by their names."""
+
+
+def job_name(stage: str, *arguments: str) -> str:
+    """Return the name of a job, by which its manifest, log and benchmark are called."""
+    return "-".join((stage, *arguments))

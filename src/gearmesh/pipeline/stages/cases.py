@@ -1,0 +1,118 @@
+"""Compute the cases of a letter of Tab. 1.
+
+Case files that are still as the manifest says are kept if they are cases of this study. Where only
+the attributes of a file are out of date (a parameter changed that this case does not depend on),
+it is written again with what it holds. All others are integrated.
+"""
+
+import time
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+
+from gearmesh.data import batches, casefile, manifest
+from gearmesh.data.casefile import Record
+from gearmesh.data.paths import Places
+from gearmesh.errors import InputError
+from gearmesh.pipeline.messages import say
+from gearmesh.study.cases import Case, Study
+
+CHUNK = 64
+"""Cases that are integrated in one go: enough to fill the lanes, few enough to show progress."""
+
+EVERY = 2.0
+"""Seconds between two progress lines of a job."""
+
+
+def cases(study: Study, places: Places, letter: str) -> list[Path]:
+    """Bring the case files and the batch file of a letter up to date."""
+    wanted = batches.by_letter(study.cases)[letter]
+    files = {case: places.case(case.variant.name, case.nu) for case in wanted}
+    records = _kept(study, places, files, places.manifest(f"cases-{letter}"))
+    kept = len(records)
+    failed = 0
+    printed = time.monotonic()
+    for chunk in _chunks([case for case in wanted if case not in records]):
+        computed = _integrate(study, places, chunk)
+        failed += sum(int(record["status"]) != 0 for record in computed)
+        records.update(zip(chunk, computed, strict=True))
+        if time.monotonic() - printed > EVERY:
+            say(f"{letter}: {len(records)} of {len(wanted)} cases")
+            printed = time.monotonic()
+    batch = places.batch(letter)
+    batches.write_batch(batch, study.pair, wanted, [records[case] for case in wanted])
+    written = [file for case, file in files.items() if study.has_file(case)]
+    _remove_others(places, letter, written)
+    counts = f"{len(wanted) - kept} computed, {kept} kept"
+    say(f"{letter}: {counts}{f', {failed} not integrated' if failed else ''}")
+    return [batch, *written]
+
+
+def case(study: Study, places: Places, variant: str, nu: str) -> list[Path]:
+    """Compute one case, whose file is asked for by its name."""
+    file = places.case(variant, nu)
+    for found in study.cases:
+        if places.case(found.variant.name, found.nu) == file and study.has_file(found):
+            _integrate(study, places, [found])
+            return [file]
+    raise InputError(f"{file}: the study {study.name} has no such case file")
+
+
+def _kept(study: Study, places: Places, files: dict[Case, Path], path: Path) -> dict[Case, Record]:
+    """Return what the case files hold that need no integration."""
+    before = manifest.read(path)
+    if before is None:
+        return {}
+    names = {case: file.relative_to(places.folder).as_posix() for case, file in files.items()}
+    known = [name for name in names.values() if name in before.written]
+    hashes = manifest.Hashes(places.folder).of(known)
+    kept = {}
+    for case, name in names.items():
+        if name in before.written and hashes[name] == before.written[name]:
+            found = _reuse(study, case, files[case])
+            if found is not None:
+                kept[case] = found
+    return kept
+
+
+def _reuse(study: Study, case: Case, path: Path) -> Record | None:
+    wanted = casefile.attributes(study.pair, case)
+    attributes, record = casefile.read_case(path)
+    if attributes.get("case_sha256") != wanted["case_sha256"]:
+        return None
+    if attributes != wanted:
+        casefile.write_case(path, wanted, record)
+    return record
+
+
+def _integrate(study: Study, places: Places, chunk: Sequence[Case]) -> list[Record]:
+    """Integrate cases that are alike, and write their files."""
+    # Imported here: a job that finds everything done need not load compiled code.
+    from gearmesh.solvers.simulation import simulate
+
+    pair = study.pair
+    problems = [pair.problem(case.variant, case.nu) for case in chunk]
+    samples = pair.samples_per_period if chunk[0].time_course else 0
+    responses = simulate(problems, pair.tolerance, samples)
+    records = [casefile.record(response, pair) for response in responses]
+    for case, record in zip(chunk, records, strict=True):
+        if study.has_file(case):
+            path = places.case(case.variant.name, case.nu)
+            casefile.write_case(path, casefile.attributes(pair, case), record)
+    return records
+
+
+def _chunks(wanted: Sequence[Case]) -> Iterator[list[Case]]:
+    """Yield a few cases at a time, those with a time course apart from those without."""
+    for time_course in (False, True):
+        alike = [case for case in wanted if case.time_course == time_course]
+        for first in range(0, len(alike), CHUNK):
+            yield alike[first : first + CHUNK]
+
+
+def _remove_others(places: Places, letter: str, written: Sequence[Path]) -> None:
+    """Remove case files of the letter that are not of this study as it is now."""
+    for folder in places.cases.glob(f"{letter}-*"):
+        for file in {*folder.iterdir()} - {*written}:
+            file.unlink()
+        if not any(folder.iterdir()):
+            folder.rmdir()

@@ -1,0 +1,109 @@
+"""Orbits and branches with units, and what is said where there are none."""
+
+import numpy as np
+import pytest
+
+import gearmesh as gm
+
+
+@pytest.fixture(scope="module")
+def pair():
+    return gm.paper()
+
+
+@pytest.fixture(scope="module")
+def orbit(pair):
+    return gm.find_orbit(pair, "c-material", 0.7)
+
+
+def test_a_long_run_ends_on_the_stable_orbit(pair, orbit):
+    run = gm.simulate(pair, "c-material", 0.7, revolutions=60)
+    found = orbit.to_dataset()
+    assert orbit.stable and not orbit.neutral
+    assert float(run.strobe_y_rel[-1]) == pytest.approx(float(found.strobe_y_rel), abs=1e-8)
+    assert float(run.strobe_v_rel[-1]) == pytest.approx(float(found.strobe_v_rel), abs=1e-8)
+    assert float(run.y_max_rel) == pytest.approx(float(found.y_max_rel), abs=1e-8)
+
+
+def test_an_orbit_closes_and_has_units(pair, orbit):
+    found = orbit.to_dataset(samples_per_period=64)
+    assert orbit.residual < 1e-11
+    assert orbit.signature == ("normal_mesh",)
+    assert orbit.multipliers.dtype == complex
+    assert found.y.attrs["units"] == "mm"
+    assert float(found.y_max) == float(found.y_max_rel) * pair.static_deflection
+    period = 2 * np.pi / (0.7 * pair.natural_frequency)
+    assert float(found.time[-1]) == pytest.approx(period * 63 / 64)
+    assert np.array_equal(found.y_rel[0], found.strobe_y_rel)
+
+
+def test_a_branch_passes_its_special_points_in_order(orbit):
+    branch = gm.follow(orbit, "nu", (0.6, 1.2))
+    kinds = [point.kind for point in branch.special]
+    assert kinds == ["switching", "grazing_front", "grazing_front"]
+    assert branch.special[0].nu == pytest.approx(0.6386, abs=5e-5)
+    found = branch.to_dataset()
+    assert float(found.nu.min()) == pytest.approx(0.6)
+    assert float(found.nu.max()) == pytest.approx(1.2)
+    assert found.stable.all()
+
+
+def test_what_a_special_point_holds_is_an_orbit_there(pair, orbit):
+    point = gm.follow(orbit, "nu", (0.6, 0.7)).special[0]
+    again = gm.find_orbit(pair, "c-material", point.nu, start=point.orbit)
+    assert float(again.to_dataset().y_max_rel) == pytest.approx(
+        float(point.orbit.to_dataset().y_max_rel), abs=1e-9
+    )
+
+
+def test_a_parameter_with_a_unit_is_followed(pair):
+    orbit = gm.find_orbit(pair, "c-material", 0.62)
+    branch = gm.follow(orbit, "damping", ("3 N s/mm", "6 N s/mm"))
+    found = branch.to_dataset()
+    assert found.damping.attrs["units"] == "N*s/mm"
+    assert float(found.damping.min()) == pytest.approx(3.0)
+    middle = int(found.sizes["point"]) // 2
+    there = pair.replace(damping=f"{float(found.damping[middle])!r} N s/mm")
+    alone = gm.find_orbit(there, "c-material", 0.62)
+    assert float(found.y_max_rel[middle]) == pytest.approx(
+        float(alone.to_dataset().y_max_rel), abs=1e-9
+    )
+
+
+def test_the_end_of_the_loops_for_every_damping_is_one_curve(pair, orbit):
+    point = gm.follow(orbit, "nu", (0.6, 0.7)).special[0]
+    limits = ((0.55, 0.70), ("3.9 N s/mm", "19.7685 N s/mm"))
+    curve = gm.follow_special(point, ("nu", "damping"), limits).to_dataset()
+    # The ledger finds 0.6165 for five times the damping, after five revolutions.
+    assert float(curve.nu[curve.damping.argmax()]) == pytest.approx(0.6165, abs=1e-4)
+
+
+def test_an_orbit_in_contact_without_damping_is_neutral(pair):
+    orbit = gm.find_orbit(pair, "c-lubricant", 1.15)
+    assert orbit.neutral
+    assert not orbit.stable
+
+
+def test_an_orbit_that_is_not_there_says_why(pair):
+    with pytest.raises(gm.NoOrbit, match=r"no orbit of period 2 at nu = 0\.7"):
+        gm.find_orbit(pair, "c-material", 0.7, periods=2, start=(1.0, 0.0))
+    with pytest.raises(gm.NoOrbit, match="run-out"):
+        gm.find_orbit(pair.replace(eccentricity="10 um"), "c-material", 0.7)
+
+
+WRONG = {
+    "periods": lambda pair, orbit: gm.find_orbit(pair, "c-material", 0.7, periods=0),
+    "variant": lambda pair, orbit: gm.find_orbit(pair, "c-mterial", 0.7),
+    "parameter": lambda pair, orbit: gm.follow(orbit, "backlsh", (0, 1)),
+    "parameter of two numbers": lambda pair, orbit: gm.follow(orbit, "eccentricity", (0, 1)),
+    "whole number": lambda pair, orbit: gm.follow(orbit, "teeth", (10, 30)),
+    "limits": lambda pair, orbit: gm.follow(orbit, "nu", (1.2, 0.6)),
+    "limit in kg": lambda pair, orbit: gm.follow(orbit, "backlash", ("1 kg", "2 kg")),
+}
+
+
+@pytest.mark.parametrize("name", WRONG)
+def test_a_wrong_argument_is_one_line(pair, orbit, name):
+    with pytest.raises(gm.InputError) as caught:
+        WRONG[name](pair, orbit)
+    assert "\n" not in str(caught.value)

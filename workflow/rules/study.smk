@@ -1,0 +1,40 @@
+# A study of one's own, without a ledger of claims: its figures and its report.
+rule study_figures:
+    input:
+        read=[PLACES.resonance, PLACES.bifurcation],
+        again=PLAN.again("study_figures"),
+    output:
+        PLACES.figure_files("response"),
+        PLACES.figure_files("bifurcation"),
+    log:
+        PLACES.log("study_figures"),
+    benchmark:
+        PLACES.benchmark("study_figures")
+    params:
+        made_of=PLAN.made_of("study_figures"),
+    shell:
+        'python -m gearmesh.pipeline study_figures "$STUDY" {params.made_of} --read {input.read}'
+        " 2>&1 | tee {log}"
+
+
+rule figures:
+    input:
+        PLACES.figure_files("response"),
+        PLACES.figure_files("bifurcation"),
+
+
+rule report:
+    input:
+        read=[PLACES.resonance, rules.figures.input],
+        again=PLAN.again("study_report"),
+    output:
+        PLACES.report,
+    log:
+        PLACES.log("study_report"),
+    benchmark:
+        PLACES.benchmark("study_report")
+    params:
+        made_of=PLAN.made_of("study_report"),
+    shell:
+        'python -m gearmesh.pipeline study_report "$STUDY" {params.made_of} --read {input.read}'
+        " 2>&1 | tee {log}"
