@@ -9,6 +9,7 @@ from typing import Annotated, Literal, Self
 import numpy as np
 from pydantic import BeforeValidator, Field, field_validator, model_validator
 
+from gearmesh.errors import InputError
 from gearmesh.model.variants import VARIANTS, Variant, variant
 from gearmesh.study.frequencies import MAX_CASES, Frequencies, Nu
 from gearmesh.study.pair import Pair
