@@ -50,6 +50,7 @@ lint: $(STAMP) ## all checks of form: formats, imports, types, workflow, noteboo
 	$(BIN)/python .ci/lint_notebooks.py
 
 docs: $(DOCS_STAMP) ## the documentation site, in docs/_build/html
+	rm -rf docs/_build docs/reference/generated
 	$(BIN)/sphinx-build --fail-on-warning --keep-going --quiet -b html docs docs/_build/html
 	$(BIN)/python .ci/lint_docs.py docs/_build/html
 

@@ -37,6 +37,11 @@ ELSEWHERE = {
     "make identify": "tests/identification/test_identification_runs.py runs a small design",
     ".venv/bin/pre-commit install": "changes the hooks of the repository that it runs in",
     ".venv/bin/snakemake --profile profiles/slurm": "tests/workflow/test_slurm.py runs it",
+    "snakemake --profile profiles/slurm": "tests/workflow/test_slurm.py runs it",
+    "snakemake": "as make reproduce",
+    "snakemake data": "tests/workflow/test_workflow.py runs it on a small study",
+    "snakemake results/paper/cases/c-material/nu-0.6600.nc": "computes a letter of the paper",
+    "snakemake all --report report.zip": "needs the results of make reproduce",
 }
 """Commands that do not run here, each with what runs it instead."""
 
@@ -88,20 +93,24 @@ def run(arguments: list[str], project: Project, text: str) -> None:
     assert finished.returncode == 0, f"{text}\n\n{finished.stdout}"
 
 
-def needs_running(page: str) -> bool:
-    return any(
-        block.kind == "python" or (block.kind in SHELL and any(map(here, commands(block.code))))
-        for block in blocks(page)
-    )
+def executed(page: str) -> list[str]:
+    """Return the commands and the Python blocks of a page that run here."""
+    found = []
+    for block in blocks(page):
+        if block.kind in SHELL:
+            found += filter(here, commands(block.code))
+        elif block.kind == "python":
+            found.append(block.code)
+    return found
 
 
-@pytest.mark.parametrize("page", [page for page in PAGES if needs_running(page)])
+@pytest.mark.parametrize("page", [page for page in PAGES if executed(page)])
 def test_what_a_page_prints_works_as_printed(
     page: str, tmp_path: Path, request: pytest.FixtureRequest
 ) -> None:
     project = Project.create(tmp_path / "project", "config/paper.yaml")
     project.path(".venv").symlink_to(sys.prefix)
-    if any(block.kind == "python" and PAPER in block.code for block in blocks(page)):
+    if any(PAPER in code for code in executed(page)):
         smoke = request.getfixturevalue("smoke")  # the paper's study, only smaller
         project.path(PAPER).parent.mkdir()
         project.path(PAPER).symlink_to(smoke.path("results/smoke"))

@@ -10,6 +10,7 @@ import itertools
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import netCDF4
 import numpy as np
@@ -98,7 +99,7 @@ def write_batch(path: Path, pair: Pair, cases: Sequence[Case], records: Sequence
             }
         )
         file.createDimension("case", len(records))
-        values = {
+        values: dict[str, Any] = {
             "variant": [names.index(case.variant.name) for case in cases],
             "nu": [case.nu for case in cases],
             "extremum_count": [record["extremum_kind"].size for record in records],

@@ -12,6 +12,7 @@ import hashlib
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import netCDF4
 import numpy as np
@@ -241,12 +242,12 @@ def define(
     field: Field,
     name: str,
     dimensions: tuple[str, ...],
-    **storage: object,
-) -> netCDF4.Variable:
+    **storage: Any,
+) -> "netCDF4.Variable[Any]":
     """Create the variable of a field, or of its twin, with its attributes."""
     variable = file.createVariable(name, field.kind, dimensions, fill_value=field.fill, **storage)
     relative = name != field.name
-    stated = {
+    stated: dict[str, Any] = {
         "units": "1" if relative else field.unit,
         "long_name": field.long_name + (", in static deflections y_st" if relative else ""),
     }

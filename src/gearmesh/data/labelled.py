@@ -42,8 +42,8 @@ def run_dataset(response: Response, pair: Pair, case: Case) -> xr.Dataset:
     for field in (*FIELDS, *SAMPLE_FIELDS):
         if field.name in columns:
             dimension = "time" if field.dimension == "sample" else field.dimension
-            for name, values, stated in _twins(field, columns):
-                dataset[name] = ((dimension,) if dimension else (), values, stated)
+            for name, values, described in _twins(field, columns):
+                dataset[name] = ((dimension,) if dimension else (), values, described)
     return dataset.set_coords("time") if "time" in dataset else dataset
 
 

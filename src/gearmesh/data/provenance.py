@@ -103,9 +103,11 @@ def _without_others(file: Path, function: str) -> str:
     text = file.read_text(encoding="utf-8")
     lines = text.splitlines()
     for node in ast.parse(text).body:
-        public = isinstance(node, ast.FunctionDef) and not node.name.startswith("_")
-        if public and node.name != function:
-            lines[node.lineno - 1 : node.end_lineno] = [""] * (node.end_lineno - node.lineno + 1)
+        if not isinstance(node, ast.FunctionDef) or node.name == function:
+            continue
+        if not node.name.startswith("_"):
+            first, last = node.lineno - 1, node.end_lineno or node.lineno
+            lines[first:last] = [""] * (last - first)
     return "\n".join(lines)
 
 

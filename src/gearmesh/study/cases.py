@@ -9,6 +9,7 @@ from typing import Annotated, Literal, Self
 import numpy as np
 from pydantic import BeforeValidator, Field, field_validator, model_validator
 
+from gearmesh.errors import InputError
 from gearmesh.model.variants import VARIANTS, Variant, variant
 from gearmesh.study.frequencies import MAX_CASES, Frequencies, Nu
 from gearmesh.study.pair import Pair
@@ -165,6 +166,13 @@ class Study:
     def claims(self) -> Path | None:
         """The ledger of claims that the study is checked against, if there is one."""
         return None if self.plan.claims is None else self.path.parent / self.plan.claims
+
+    @property
+    def ledger(self) -> Path:
+        """The ledger of claims; the pipeline asks for it only if the study has one."""
+        if self.claims is None:
+            raise InputError(f"{self.path}: claims: missing; wanted is a ledger of claims")
+        return self.claims
 
     @property
     def nu(self) -> np.ndarray:

@@ -15,7 +15,7 @@ def printed(study: Study, places: Places) -> list[Path]:
     from gearmesh.reproduction.claims.checking import check_figure
 
     path = places.check("printed")
-    check_figure("printed", Evidence(pair=study.pair), load_ledger(study.claims), path)
+    check_figure("printed", Evidence(pair=study.pair), load_ledger(study.ledger), path)
     return [path]
 
 
@@ -27,8 +27,8 @@ def ledger(study: Study, places: Places) -> list[Path]:
     from gearmesh.reproduction.claims import collect, load_ledger, verdict
 
     checks = [places.check(name) for name in CHECKED]
-    entries = collect(load_ledger(study.claims), checks, places.ledger)
-    found: dict[str, Counter] = {}
+    entries = collect(load_ledger(study.ledger), checks, places.ledger)
+    found: dict[str, Counter[str]] = {}
     for entry in entries:
         found.setdefault(entry.figure, Counter())[entry.status] += 1
     lines = [

@@ -25,7 +25,7 @@ def figure(study: Study, places: Places, name: str) -> list[Path]:
         "bifurcation": places.bifurcation,
         "thresholds": places.thresholds,
         "cases": places.cases,
-        "ledger": study.claims,
+        "ledger": study.ledger,
         "figure": png.with_suffix(""),
         "checks": checks,
     }

@@ -1,6 +1,7 @@
 """Infer from the claims the parameters that the paper does not print."""
 
 from pathlib import Path
+from typing import Any
 
 from gearmesh.data.paths import CLAIMS, Places
 from gearmesh.pipeline.messages import say
@@ -20,6 +21,7 @@ def samples(study: Study, places: Places, design: str, index: str) -> list[Path]
     warnings.filterwarnings("ignore", category=RuntimeWarning)
     settings = load_settings(layout.SETTINGS)
     stated = settings.designs[design]
+    assert stated.around is not None  # a box belongs to a focused design
     points = unit_points(stated)
     if stated.around:
         points = boxes.read_box(layout.box_file(places, design)).fill(points)
@@ -39,6 +41,7 @@ def box(study: Study, places: Places, design: str) -> list[Path]:
 
     settings = load_settings(layout.SETTINGS)
     stated = settings.designs[design]
+    assert stated.around is not None  # a box belongs to a focused design
     before = layout.batch_files(places, settings, *layout.family(settings, stated.around))
     tested = [claim for claim in load_ledger(CLAIMS) if claim.id in tested_claims()]
     file = layout.box_file(places, design)
@@ -73,7 +76,7 @@ def identified(study: Study, places: Places) -> list[Path]:
         ledger=[claim for claim in load_ledger(CLAIMS) if claim.id in tested_claims()],
         settings=settings,
     )
-    found = findings(analysis)
+    found: dict[str, Any] = findings(analysis)
     table.write(layout.found(places), found)
     recovery = found["recovery"]
     say(f"synthetic papers: {recovery['recovered']} of {recovery['papers']} recovered")
