@@ -84,6 +84,7 @@ def _parser() -> _Parser:
     commands = parser.add_subparsers(required=True, metavar="COMMAND", parser_class=_Parser)
     pair = _pair_options()
     _add_runs(commands, pair)
+    _add_orbits(commands, pair)
     _add_pictures(commands)
     _add_tables(commands, pair)
     return parser
@@ -107,15 +108,9 @@ def _pair_options() -> _Parser:
 
 
 def _add_runs(commands: "argparse._SubParsersAction[_Parser]", pair: _Parser) -> None:
-    run = _Parser(add_help=False)
+    run = _Parser(add_help=False, parents=[_start_option()])
     run.add_argument("--revolutions", metavar="N", help="revolutions that are run")
     run.add_argument("--kept", metavar="N", help="last revolutions that are kept")
-    run.add_argument(
-        "--start",
-        metavar=("Y", "V"),
-        nargs=2,
-        help="y and dy/dtau_s at the start, such as '12 um' '0 um'; a bare number counts y_st",
-    )
     run.add_argument(
         "-o", "--output", required=True, metavar="FILE.nc", type=Path, help="file to write"
     )
@@ -142,6 +137,47 @@ def _add_runs(commands: "argparse._SubParsersAction[_Parser]", pair: _Parser) ->
         help="let each run go on from the end of the run before it",
     )
     sweep.set_defaults(run=_sweep)
+
+
+def _start_option() -> _Parser:
+    option = _Parser(add_help=False)
+    option.add_argument(
+        "--start",
+        metavar=("Y", "V"),
+        nargs=2,
+        help="y and dy/dtau_s at the start, such as '12 um' '0 um'; a bare number counts y_st",
+    )
+    return option
+
+
+def _add_orbits(commands: "argparse._SubParsersAction[_Parser]", pair: _Parser) -> None:
+    near = _Parser(add_help=False, parents=[_start_option()])
+    near.add_argument("--variant", required=True, help="see 'gearmesh variants'")
+    near.add_argument("--nu", required=True, help="mesh frequency nu_s")
+    near.add_argument(
+        "--periods", metavar="N", default="1", help="least period in mesh periods (default: 1)"
+    )
+    near.add_argument("-o", "--output", metavar="FILE.nc", type=Path, help="file to write")
+
+    orbit = commands.add_parser(
+        "orbit", parents=[pair, near], help="find a periodic orbit and its Floquet multipliers"
+    )
+    orbit.set_defaults(run=_orbit)
+
+    branch = commands.add_parser(
+        "branch", parents=[pair, near], help="follow an orbit and list the special points"
+    )
+    branch.add_argument(
+        "--parameter", metavar="NAME", default="nu", help="what to vary (default: nu)"
+    )
+    branch.add_argument(
+        "--range",
+        metavar=("LOW", "HIGH"),
+        nargs=2,
+        required=True,
+        help="its range, with units unless it is a plain number",
+    )
+    branch.set_defaults(run=_branch)
 
 
 def _add_pictures(commands: "argparse._SubParsersAction[_Parser]") -> None:
@@ -193,6 +229,18 @@ def _sweep(options: argparse.Namespace) -> int:
     from gearmesh.commands.runs import sweep
 
     return sweep(options)
+
+
+def _orbit(options: argparse.Namespace) -> int:
+    from gearmesh.commands.orbits import orbit
+
+    return orbit(options)
+
+
+def _branch(options: argparse.Namespace) -> int:
+    from gearmesh.commands.orbits import branch
+
+    return branch(options)
 
 
 def _plot(options: argparse.Namespace) -> int:

@@ -2,6 +2,7 @@
 
 import argparse
 import os
+from collections.abc import Sequence
 from decimal import Decimal, InvalidOperation
 from pathlib import Path
 
@@ -19,9 +20,9 @@ _NETCDF = (b"CDF", b"\x89HDF")
 def simulate(options: argparse.Namespace) -> int:
     """Integrate one run and write it with its time course."""
     chosen = variant(options.variant)
-    nu = _frequency(options.nu)
+    nu = read_frequency(options.nu)
     pair = _pair(options)
-    replaces = _check_output(options.output)
+    replaces = check_output(options.output)
 
     from gearmesh.data import casefile
     from gearmesh.solvers.simulation import simulate as integrate
@@ -54,7 +55,7 @@ def sweep(options: argparse.Namespace) -> int:
     chosen = [variant(name) for name in options.variant]
     nus = _frequencies(options.nu)
     pair = _pair(options)
-    replaces = _check_output(options.output)
+    replaces = check_output(options.output)
 
     from gearmesh.interface.runs import sweep as integrate
 
@@ -74,13 +75,20 @@ def _pair(options: argparse.Namespace) -> Pair:
     """Return the pair with the settings of the run."""
     from gearmesh.interface.statements import with_settings
 
-    start = options.start and tuple(_number_or_text(text) for text in options.start)
     return with_settings(
         load_pair(options),
-        start,
+        read_start(options.start),
         revolutions=_whole("--revolutions", options.revolutions),
         kept_revolutions=_whole("--kept", options.kept),
     )
+
+
+def read_start(texts: Sequence[str] | None) -> tuple[object, object] | None:
+    """Read an initial condition: two quantities, or numbers of static deflections."""
+    if texts is None:
+        return None
+    displacement, velocity = (_number_or_text(text) for text in texts)
+    return displacement, velocity
 
 
 def _whole(option: str, text: str | None) -> int | None:
@@ -98,22 +106,22 @@ def _number_or_text(text: str) -> float | str:
         return text
 
 
-def _frequency(text: str) -> float:
+def read_frequency(text: str) -> float:
+    """Read a mesh frequency from the command line."""
     try:
         return read_nu(text)
     except ValueError as error:
-        hint = "; use a decimal point" if "," in text else ""
-        raise InputError(f"--nu: found '{text}': {error}{hint}") from None
+        raise InputError(f"--nu: found '{text}': {error}") from None
 
 
 def _frequencies(text: str) -> list[float]:
     """Read ``START:STOP:STEP``, or one frequency."""
     parts = text.split(":")
     if len(parts) == 1:
-        return [_frequency(text)]
+        return [read_frequency(text)]
     if len(parts) != 3:
         raise InputError(f"--nu: found '{text}'; allowed is START:STOP:STEP, or one number")
-    low, high = (Decimal(repr(_frequency(part))) for part in parts[:2])
+    low, high = (Decimal(repr(read_frequency(part))) for part in parts[:2])
     try:
         step = Decimal(parts[2])
     except InvalidOperation:
@@ -126,7 +134,7 @@ def _frequencies(text: str) -> list[float]:
     return [float(low + i * step) for i in range(count)]
 
 
-def _check_output(path: Path) -> str:
+def check_output(path: Path) -> str:
     """Refuse an output before the run that could not be written after it, or would destroy others.
 
     Returns
