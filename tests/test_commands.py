@@ -5,6 +5,7 @@ import shutil
 import subprocess
 import sys
 
+import numpy as np
 import pytest
 import xarray as xr
 
@@ -149,6 +150,36 @@ def test_sweep_writes_one_dataset(gearmesh, tmp_path):
     with xr.open_dataset(file) as found:
         assert dict(found["y_max"].sizes) == {"variant": 2, "nu": 6}
         assert found["nu"].values.tolist() == [0.6, 0.61, 0.62, 0.63, 0.64, 0.65]
+
+
+def test_orbit_prints_its_multipliers_and_writes_it(gearmesh, tmp_path):
+    file = tmp_path / "orbit.nc"
+    run = gearmesh("orbit", "--variant", "c-lubricant", "--nu", "0.9", "-o", file)
+    assert (run.returncode, run.stderr) == (0, "")
+    assert "period 1, stable" in run.stdout
+    assert "regimes: normal mesh, contact loss" in run.stdout
+    with xr.open_dataset(file) as orbit:
+        moduli = np.hypot(orbit.multipliers_real, orbit.multipliers_imag)
+    assert f"{float(moduli.max()):.10f}" in run.stdout
+
+
+def test_branch_lists_its_special_points(gearmesh, tmp_path):
+    file = tmp_path / "branch.nc"
+    run = gearmesh(
+        *("branch", "--variant", "c-material", "--nu", "0.7", "--range", "0.6", "0.75"),
+        *("-o", file),
+    )
+    assert (run.returncode, run.stderr) == (0, "")
+    [point] = (line.split() for line in run.stdout.splitlines() if line.startswith("switching"))
+    assert float(point[1]) == pytest.approx(0.6386, abs=5e-5)
+    with xr.open_dataset(file) as branch:
+        assert float(branch.nu.min()) == pytest.approx(0.6)
+
+
+def test_an_orbit_that_is_not_there_says_why(gearmesh):
+    run = gearmesh("orbit", "--variant", "c-both", "--nu", "0.7", "--set", "eccentricity=9 um")
+    assert run.returncode == 1
+    assert "run-out" in run.stdout
 
 
 @pytest.fixture(scope="module")

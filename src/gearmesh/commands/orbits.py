@@ -32,10 +32,8 @@ def orbit(options: argparse.Namespace) -> int:
     print(f"regimes: {', '.join(found.signature).replace('_', ' ')}")
     rows = [("multiplier", "modulus", "argument in deg")]
     for value in found.multipliers:
-        angle = np.degrees(np.angle(value))
-        rows.append(
-            (f"{value.real:+.10f} {value.imag:+.10f}i", f"{abs(value):.10f}", f"{angle:.4f}")
-        )
+        angle = f"{np.degrees(np.angle(value)):.4f}"
+        rows.append((f"{value.real:+.10f} {value.imag:+.10f}i", f"{abs(value):.10f}", angle))
     print_table(rows)
     if options.output:
         _write(heights, options.output)
