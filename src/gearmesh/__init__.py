@@ -7,7 +7,7 @@ The names below are the public ones. Each is imported when it is first used, so 
 which need no solver do not load one.
 """
 
-from importlib import import_module
+import importlib
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
@@ -61,7 +61,9 @@ _MODULES = {
 def __getattr__(name: str) -> object:
     for module, names in _MODULES.items():
         if name in names:
-            value = globals()[name] = getattr(import_module(module), name)
+            # Code that a job uses names its modules itself, and is found by them.
+            loaded = importlib.import_module(module)  # noqa: TID251
+            value = globals()[name] = getattr(loaded, name)
             return value
     raise AttributeError(f"module 'gearmesh' has no attribute {name!r}")
 

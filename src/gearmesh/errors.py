@@ -1,4 +1,4 @@
-"""The one kind of error that a user is meant to see."""
+"""The error that users see."""
 
 
 class InputError(ValueError):

@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 from scipy.stats import qmc
 
 from gearmesh.identification import boxes, focus, inference
-from gearmesh.identification.settings import FACTORS
+from gearmesh.identification.factors import FACTORS
 
 
 @given(st.lists(st.floats(0, 1), min_size=2, max_size=20), st.sampled_from([*FACTORS]))

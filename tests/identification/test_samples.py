@@ -12,7 +12,8 @@ from gearmesh.data.paths import Places
 from gearmesh.dynamics.response_curves import WIDTH
 from gearmesh.identification import design, layout, store, survey, table
 from gearmesh.identification.curves import ACCURACY, SampledCurve, scan_all
-from gearmesh.identification.settings import KINDS, load_settings
+from gearmesh.identification.factors import KINDS
+from gearmesh.identification.settings import load_settings
 from gearmesh.model.variants import variant
 from gearmesh.reproduction import thresholds
 from gearmesh.solvers.simulation import simulate

@@ -25,6 +25,7 @@ from gearmesh.reproduction.figures import (
     orbit,
     palette,
 )
+from gearmesh.reproduction.frequencies import CROSSING, FIG_4
 
 PLACES = Places("smoke")
 
@@ -48,7 +49,7 @@ def courses(small_run, small_study):
 @pytest.fixture(scope="module")
 def draw(resonance, bifurcation, courses):
     material, strong, lubricant = (
-        orbit.by_tuning(courses, name) for name in ("c-material", "c-material-5x", "c-lubricant")
+        orbit.by_nu(courses, name) for name in ("c-material", "c-material-5x", "c-lubricant")
     )
     return {
         "fig1": fig1.draw,
@@ -57,7 +58,7 @@ def draw(resonance, bifurcation, courses):
         "fig4": lambda: fig4.draw(lubricant),
         "fig5": lambda: fig5.draw(material),
         "fig6": lambda: fig6.draw(material, strong),
-        "fig7": lambda: fig7.draw(material[fig7.TUNING], strong[fig7.TUNING]),
+        "fig7": lambda: fig7.draw(material[CROSSING], strong[CROSSING]),
     }
 
 
@@ -128,9 +129,9 @@ def test_fig3_enlarges_detail_x(bifurcation):
 
 
 def test_fig4_shades_exactly_the_contact_loss(courses):
-    figure = fig4.draw(orbit.by_tuning(courses, "c-lubricant"))
+    figure = fig4.draw(orbit.by_nu(courses, "c-lubricant"))
     course = orbit.last_periods(courses["c-lubricant", 1.05], 21)
-    loss, inverse = figure.axes[len(fig4.TUNINGS) + 1].collections
+    loss, inverse = figure.axes[len(FIG_4) + 1].collections
     lost = course["period"].values[course["regime"].values == 0]
     stretches = [path.get_extents() for path in loss.get_paths()]
     assert all(any(box.x0 <= t <= box.x1 for box in stretches) for t in lost)
@@ -142,7 +143,7 @@ def test_fig4_shades_exactly_the_contact_loss(courses):
 
 
 def test_fig5_keeps_orbits_apart_and_tells_loops(courses):
-    material = orbit.by_tuning(courses, "c-material")
+    material = orbit.by_nu(courses, "c-material")
     figure = fig5.draw(material)
     axes = figure.axes[0]
     orbits = {
@@ -157,15 +158,13 @@ def test_fig5_keeps_orbits_apart_and_tells_loops(courses):
 
 
 def test_fig6_shows_only_its_range(courses):
-    figure = fig6.draw(
-        orbit.by_tuning(courses, "c-material"), orbit.by_tuning(courses, "c-material-5x")
-    )
+    figure = fig6.draw(orbit.by_nu(courses, "c-material"), orbit.by_nu(courses, "c-material-5x"))
     shown = {float(line.get_data_3d()[0][0]) for line in figure.axes[0].lines}
     assert shown == {nu for name, nu in courses if name == "c-material" and nu <= 0.8}
 
 
 def test_fig7_shows_two_periods_of_all_six_courses(courses):
-    pair = [courses[name, fig7.TUNING] for name in ("c-material", "c-material-5x")]
+    pair = [courses[name, CROSSING] for name in ("c-material", "c-material-5x")]
     figure = fig7.draw(*pair)
     for axes, (name, divisor, _) in zip(figure.axes[2:], fig7.ROWS, strict=True):
         lines = [line for line in axes.lines if len(line.get_xdata()) == 512]
@@ -209,9 +208,9 @@ def test_regions_have_the_colours_of_the_paper_and_differ_in_grey():
 
 
 def test_courses_differ_in_shape_and_the_dampings_in_lightness():
-    looks = {(c.marker, c.open, c.colour) for c in palette.COURSES.values()}
-    shapes = {(c.marker, c.open) for c in palette.COURSES.values()}
-    assert len(looks) == len(shapes) == len({c.symbol for c in palette.COURSES.values()}) == 4
+    looks = {(c.marker, c.open, c.colour) for c in palette.LOOKS.values()}
+    shapes = {(c.marker, c.open) for c in palette.LOOKS.values()}
+    assert len(looks) == len(shapes) == len({c.symbol for c in palette.LOOKS.values()}) == 4
     grey = [np.dot(to_rgb(c), (0.2126, 0.7152, 0.0722)) for c in (palette.BLUE, palette.RED)]
     assert abs(grey[0] - grey[1]) > 0.1
 

@@ -125,7 +125,7 @@ def _add_runs(commands: "argparse._SubParsersAction[_Parser]", pair: _Parser) ->
     )
     simulate.add_argument("--variant", required=True, help="see 'gearmesh variants'")
     simulate.add_argument("--nu", required=True, help="mesh frequency nu_s")
-    simulate.set_defaults(run=_command("runs", "simulate"))
+    simulate.set_defaults(run=_simulate)
 
     sweep = commands.add_parser(
         "sweep", parents=[pair, run], help="integrate variants over mesh frequencies"
@@ -141,7 +141,7 @@ def _add_runs(commands: "argparse._SubParsersAction[_Parser]", pair: _Parser) ->
         choices=("up", "down"),
         help="let each run go on from the end of the run before it",
     )
-    sweep.set_defaults(run=_command("runs", "sweep"))
+    sweep.set_defaults(run=_sweep)
 
 
 def _add_pictures(commands: "argparse._SubParsersAction[_Parser]") -> None:
@@ -156,7 +156,7 @@ def _add_pictures(commands: "argparse._SubParsersAction[_Parser]") -> None:
         type=Path,
         help="PNG, SVG or PDF file (default: FILE.png)",
     )
-    plot.set_defaults(run=_command("pictures", "plot"))
+    plot.set_defaults(run=_plot)
 
     compare = commands.add_parser(
         "compare", help="draw two runs on each other, and list their differences"
@@ -170,25 +170,50 @@ def _add_pictures(commands: "argparse._SubParsersAction[_Parser]") -> None:
         type=Path,
         help="PNG, SVG or PDF file (default: A-B.png)",
     )
-    compare.set_defaults(run=_command("pictures", "compare"))
+    compare.set_defaults(run=_compare)
 
 
 def _add_tables(commands: "argparse._SubParsersAction[_Parser]", pair: _Parser) -> None:
     variants = commands.add_parser("variants", help="list the damping variants of Tab. 1")
-    variants.set_defaults(run=_command("tables", "variants"))
+    variants.set_defaults(run=_variants)
 
     parameters = commands.add_parser(
         "parameters", parents=[pair], help="list every parameter with value, unit, kind and reason"
     )
-    parameters.set_defaults(run=_command("tables", "parameters"))
+    parameters.set_defaults(run=_parameters)
 
 
-def _command(module: str, name: str):  # type: ignore[no-untyped-def]
-    """Return a function that imports a command when it is run."""
+def _simulate(options: argparse.Namespace) -> int:
+    from gearmesh.commands.runs import simulate
 
-    def run(options: argparse.Namespace) -> int:
-        from importlib import import_module
+    return simulate(options)
 
-        return int(getattr(import_module(f"gearmesh.commands.{module}"), name)(options))
 
-    return run
+def _sweep(options: argparse.Namespace) -> int:
+    from gearmesh.commands.runs import sweep
+
+    return sweep(options)
+
+
+def _plot(options: argparse.Namespace) -> int:
+    from gearmesh.commands.pictures import plot
+
+    return plot(options)
+
+
+def _compare(options: argparse.Namespace) -> int:
+    from gearmesh.commands.pictures import compare
+
+    return compare(options)
+
+
+def _variants(options: argparse.Namespace) -> int:
+    from gearmesh.commands.tables import variants
+
+    return variants(options)
+
+
+def _parameters(options: argparse.Namespace) -> int:
+    from gearmesh.commands.tables import parameters
+
+    return parameters(options)

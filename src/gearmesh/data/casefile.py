@@ -108,37 +108,37 @@ SAMPLE_FIELDS = (
 """The variables of a time course."""
 
 
-def record(response: Response, parameters: Pair) -> Record:
+def record(response: Response, pair: Pair) -> Record:
     """Convert a response into the units of a file.
 
     Parameters
     ----------
     response : Response
         Dimensionless, with or without samples.
-    parameters : Pair
+    pair : Pair
         They set the scales of length, time and force.
     """
     scales = {
-        "mm": parameters.static_deflection,
-        "s": 1.0 / parameters.natural_frequency,
-        "N/mm": parameters.stiffness_mean,
-        "N": parameters.static_force,
+        "mm": pair.static_deflection,
+        "s": 1.0 / pair.natural_frequency,
+        "N/mm": pair.stiffness_mean,
+        "N": pair.static_force,
     }
     columns: Record = {}
     for field, value in _values(response):
         missing = netCDF4.default_fillvals[field.kind]
         array = np.asarray(missing if value is None else value, field.kind)
         if field.dimension == "boundary" and array.size == 0:
-            array = np.full(boundaries(parameters), np.nan)  # of a run that failed
+            array = np.full(boundaries(pair), np.nan)  # of a run that failed
         if field.relative:
             columns[field.relative] = array
         columns[field.name] = array * scales[field.unit] if field.unit in scales else array
     return columns
 
 
-def boundaries(parameters: Pair) -> int:
+def boundaries(pair: Pair) -> int:
     """Return the number of boundaries of mesh periods in a run."""
-    return parameters.revolutions * parameters.teeth + 1
+    return pair.revolutions * pair.teeth + 1
 
 
 def _values(response: Response) -> Iterator[tuple[Field, object]]:
@@ -157,20 +157,20 @@ def _values(response: Response) -> Iterator[tuple[Field, object]]:
 
 
 @functools.lru_cache(maxsize=2**13)
-def case_digest(parameters: Pair, case: Case) -> str:
+def case_digest(pair: Pair, case: Case) -> str:
     """Return the SHA-256 of all that decides the numbers of a case.
 
     It is blind to parameters without effect on this case: a conservative run has the same digest
     whatever the damping.
     """
     scales = (
-        parameters.static_deflection,
-        parameters.natural_frequency,
-        parameters.stiffness_mean,
+        pair.static_deflection,
+        pair.natural_frequency,
+        pair.stiffness_mean,
     )
-    samples = parameters.samples_per_period if case.time_course else 0
-    problem = parameters.problem(case.variant, case.nu)
-    stated = repr((problem, scales, samples, parameters.tolerance))
+    samples = pair.samples_per_period if case.time_course else 0
+    problem = pair.problem(case.variant, case.nu)
+    stated = repr((problem, scales, samples, pair.tolerance))
     return hashlib.sha256(f"{stated} {_common_digest()}".encode()).hexdigest()
 
 
@@ -180,26 +180,28 @@ def _common_digest() -> str:
     return f"{layout} {provenance.physics_digest()} {provenance.versions()}"
 
 
-def attributes(parameters: Pair, case: Case) -> dict[str, str | float]:
+def attributes(pair: Pair, case: Case) -> dict[str, str | float]:
     """Return the global attributes of a case file: what it is, and how it was made."""
+    sweep = {"sweep_direction": case.direction} if case.direction else {}
     return {
         "Conventions": "CF-1.11",
         "title": f"gear mesh, variant {case.variant.name}, nu_s = {case.nu!r}",
         "variant": case.variant.name,
         "nu_s": case.nu,
-        "case_sha256": case_digest(parameters, case),
-        **common_attributes(parameters),
+        **sweep,
+        "case_sha256": case_digest(pair, case),
+        **common_attributes(pair),
     }
 
 
 @functools.lru_cache(maxsize=4)
-def common_attributes(parameters: Pair) -> dict[str, str | float]:
+def common_attributes(pair: Pair) -> dict[str, str | float]:
     """Return the attributes that all files of a study share."""
     return {
-        "parameters": parameters.canonical(),
-        "parameters_sha256": parameters.digest(),
+        "parameters": pair.canonical(),
+        "parameters_sha256": pair.digest(),
         "solver": "adaptive Taylor series with located events",
-        "solver_tolerance": parameters.tolerance,
+        "solver_tolerance": pair.tolerance,
         **{f"{name}_version": number for name, number in provenance.versions().items()},
         "physics_sources_sha256": provenance.physics_digest(),
     }

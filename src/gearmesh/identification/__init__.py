@@ -1,8 +1,8 @@
-"""What the paper does not print, inferred from what it says.
+"""The parameters that the paper does not print, inferred from its claims.
 
-The open parameters are sampled over plausible ranges (`design`), every claim of the ledger is
-measured on each sample (`survey`), and the measures are weighed against the paper's words
-(`wording`) to tell which values fit (`inference`), which claims hold whatever the values are and
-which parameter moves which threshold (`sensitivity`). `synthetic` checks all of it on papers whose
-parameters are known.
+`factors` lists the open parameters. `design` samples them over plausible ranges, and `survey`
+measures every claim of the ledger on each sample. `wording` compares the measurements with the
+words of the paper. `inference` finds the values that are compatible with the claims, and
+`sensitivity` the parameters that influence a threshold. `synthetic` checks the method on papers
+with known parameters.
 """

@@ -1,10 +1,11 @@
-"""Boxes in the unit cube, and how densely all designs together cover each place.
+"""Boxes in the unit cube, and the weights of samples that were drawn in them.
 
-Few samples of an even design meet many claims at once. A focused design fills the box that the best
-samples before it span, evenly again. Each sample then counts by the inverse of the density with
-which all designs of its family together were drawn there (the balance heuristic of Veach and
-Guibas, 1995): inside a box it is one over its volume, outside 0. So for given boxes shares and
-regions mean the even prior. That the boxes come from the same samples is what `MARGIN` is for.
+Few samples of an even design meet many claims at once. A focused design fills, evenly, the box that
+the best samples of the previous design span. The weight of each sample is the inverse of the
+density with which all designs of its family together were drawn at its point (the balance heuristic
+of Veach and Guibas, 1995). The density of a box is one over its volume inside, and 0 outside. With
+these weights, shares and regions refer to the even prior if the boxes are given. The boxes come
+from the same samples, however; `MARGIN` corrects for that.
 """
 
 from collections.abc import Sequence
@@ -15,28 +16,26 @@ import numpy as np
 import xarray as xr
 
 from gearmesh.identification import store
-from gearmesh.identification.settings import KINDS, Design
+from gearmesh.identification.factors import FACTORS, KINDS
+from gearmesh.identification.settings import Design
 
 MARGIN = 0.05
-"""How far a box reaches beyond its samples on each side, as a share of their interval.
+"""Extension of a box beyond its samples on each side, as a share of their interval.
 
-What fits reaches farther than the samples that were found in it. If the box ended at them, what
-lies beside it would be sampled by nobody, and its share would be missed for good: a fifth of a
-region in nine dimensions that 64 samples span. With this margin it is less than the noise.
+The compatible region extends beyond the samples that were found in it. Without a margin, no design
+would sample the rest of it: a fifth of a region in nine dimensions that 64 samples span. With this
+margin, the missed share is smaller than the noise.
 """
-
-_PERIODIC = ("initial_phase", "kind")
-"""Factors without ends. Any two of the three kinds are neighbours on their circle."""
 
 
 @dataclass(frozen=True)
 class Box:
-    """A part of the unit cube: along each coordinate an interval, or an arc that may pass 1.
+    """A part of the unit cube: along each coordinate an interval, or an arc that may wrap at 1.
 
     Attributes
     ----------
     low, length : ndarray, shape (d,)
-        Where it begins and how far it reaches; ``low + length`` passes 1 on an arc only.
+        Its lower end and its length; ``low + length`` exceeds 1 on an arc only.
     """
 
     low: np.ndarray
@@ -58,20 +57,20 @@ class Box:
 
 
 def span(places: np.ndarray, factor: str) -> tuple[float, float]:
-    """Return where the shortest interval or arc begins that holds all places, and its length.
+    """Return the start and the length of the shortest interval or arc that holds all places.
 
-    A margin is added at both ends; a kind of run is there or not.
+    A margin is added at both ends, except for the kind of run, which has no values in between.
     """
     ends = np.sort(places)
     if factor == "kind":
         ends = np.unique((ends * len(KINDS)).astype(int)) / len(KINDS)
     gaps = np.diff(ends, append=ends[0] + 1.0)
-    widest = int(np.argmax(gaps)) if factor in _PERIODIC else len(gaps) - 1
+    widest = int(np.argmax(gaps)) if FACTORS[factor].periodic else len(gaps) - 1
     low, length = ends[(widest + 1) % len(ends)], 1.0 - gaps[widest]
     if factor == "kind":
         return float(low), float(length + 1.0 / len(KINDS))
     margin = MARGIN * length
-    if factor in _PERIODIC:
+    if FACTORS[factor].periodic:
         return float((low - margin) % 1.0), float(min(length + 2.0 * margin, 1.0))
     first, last = max(low - margin, 0.0), min(low + length + margin, 1.0)
     return float(first), float(last - first)

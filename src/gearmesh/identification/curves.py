@@ -1,9 +1,9 @@
 """Response curves of one sample: separate runs, or sweeps up or down.
 
-The searches of the ledger (`gearmesh.reproduction.thresholds`) work on these curves. They scan less
-closely than for the study itself and locate thresholds to ± 0.001; how coarse a scan may be
-depends on the variant. The scans of many samples are run together, sweeps step by step, so that
-the solver's lanes are never empty.
+The searches of the ledger (`gearmesh.reproduction.thresholds`) run on these curves. Their scans are
+coarser than those of the study itself, and they locate thresholds to ± 0.001. The spacing of a scan
+depends on the variant. The scans of many samples are run together, sweeps step by step, to keep all
+lanes of the solver busy.
 """
 
 from collections.abc import Iterable, Sequence
@@ -16,13 +16,14 @@ from gearmesh.identification.design import Sample, pair_of
 from gearmesh.model.motion import state_at
 from gearmesh.model.problem import Problem, State
 from gearmesh.model.variants import variant
-from gearmesh.reproduction.thresholds import FIRST, LAST, LOOPS_FROM
+from gearmesh.reproduction.frequencies import FIRST, LAST
+from gearmesh.reproduction.thresholds import LOOPS_FROM
 from gearmesh.solvers.response import Response
 from gearmesh.solvers.simulation import simulate
 from gearmesh.study.pair import Pair
 
 ACCURACY = 1e-3
-"""Thresholds in nu_s are located to this."""
+"""Accuracy of thresholds in ν_s."""
 
 # A ninth of the first decides between jump and slope (`response_curves.JUMP_WIDTH`),
 # ninths of the others locate to `ACCURACY`: one refinement, eight runs, is enough.
@@ -33,23 +34,23 @@ _JUMPS_UP_TO = 0.92
 def scan_of(name: str) -> np.ndarray:
     """Return the mesh frequencies of the scan of a variant, ascending.
 
-    Damping in the lubricant alone leaves jumps and long transients: they need a close scan. With
-    linear damping in the material there are jumps too, but wide apart. All other curves are
-    smooth; the loops of c-material are followed down to `LOOPS_FROM`.
+    With damping in the lubricant alone, jumps and long transients need a close scan.
+    With linear damping in the material there are jumps too, but far apart. All other curves are
+    smooth. The loops of c-material are followed down to `LOOPS_FROM`.
     """
     if name.endswith("lubricant"):
         return np.concatenate(
-            [_places(FIRST, _JUMPS_UP_TO, _FINE), _places(_JUMPS_UP_TO, LAST, _MEDIUM)[1:]]
+            [_spaced(FIRST, _JUMPS_UP_TO, _FINE), _spaced(_JUMPS_UP_TO, LAST, _MEDIUM)[1:]]
         )
     if name.startswith("b-"):
-        return _places(FIRST, LAST, _MEDIUM)
-    smooth = _places(FIRST, LAST, _COARSE)
+        return _spaced(FIRST, LAST, _MEDIUM)
+    smooth = _spaced(FIRST, LAST, _COARSE)
     if not name.startswith("c-material"):
         return smooth
-    return np.concatenate([_places(LOOPS_FROM, FIRST, _COARSEST)[:-1], smooth])
+    return np.concatenate([_spaced(LOOPS_FROM, FIRST, _COARSEST)[:-1], smooth])
 
 
-def _places(low: float, high: float, spacing: float) -> np.ndarray:
+def _spaced(low: float, high: float, spacing: float) -> np.ndarray:
     return np.round(np.linspace(low, high, round((high - low) / spacing) + 1), 10)
 
 
@@ -72,7 +73,7 @@ class SampledCurve(ResponseCurve):
     def __init__(self, sample: Sample, study: Pair, name: str) -> None:
         pair = pair_of(sample, study)
         super().__init__(self.problem, pair.tolerance, name)
-        # All but ν_s and the start: to state a run anew each time would cost as much as the run.
+        # Only ν_s and the initial condition change; stating a run takes as long as running it.
         self._stated = pair.problem(variant(name), FIRST)
         self._samples_per_period = pair.samples_per_period
         self._kind = sample["kind"]
@@ -93,18 +94,18 @@ class SampledCurve(ResponseCurve):
         return self._tolerance
 
     def scan(self, low: float, high: float) -> np.ndarray:
-        """Return the two ends and the places of the scan between them."""
+        """Return the two ends and the frequencies of the scan between them."""
         if high < low:
             return np.empty(0)
         inside = self.grid[(self.grid > low) & (self.grid < high)]
         return np.unique(np.concatenate([[low], inside, [high]]))
 
     def learn(self, nu: Iterable[float], responses: Iterable[Response]) -> None:
-        """Take responses in."""
+        """Store responses."""
         self._known.update(zip(map(float, nu), responses, strict=True))
 
     def problem(self, nu: float) -> Problem:
-        """State the run at one ν_s, which in a sweep starts where its neighbour has ended."""
+        """State the run at one ν_s; in a sweep it starts at the end of its neighbour's run."""
         start = self._neighbours_end(nu) if self.swept else None
         return replace(self._stated, nu=nu, initial_state=start or self._start)
 

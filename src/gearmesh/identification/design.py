@@ -4,69 +4,41 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from gearmesh.identification.settings import KINDS, Design, Settings
+from gearmesh.identification.factors import FACTORS, KINDS, OF_THE_PAIR, scales
+from gearmesh.identification.settings import Design, Settings
 from gearmesh.study.pair import Pair
 
 Sample = dict[str, float | str]
-"""Factor -> value; all lengths in static deflections, masses in m_red, stiffnesses in C_s."""
+"""Factor -> value, in the scale of the factor."""
 
-NEUTRAL: Sample = {
-    "initial_phase": 0.0,
-    "initial_velocity": 0.0,
-    "kind": KINDS[0],
-    "eccentricity_3": 0.0,
-    "eccentricity_2": 0.0,
-    "eccentricity_angle": 0.0,
-}
-"""Values that remove an effect: they hold where a design says nothing."""
+FROM_REST: Sample = {"initial_velocity": 0.0, "kind": KINDS[0]}
+"""Runs of the natural reading: each starts from rest."""
+
+_WHEELS = ("eccentricity_3", "eccentricity_2")
 
 
 def stated(pair: Pair) -> Sample:
     """Return the sample that a study states."""
-    y_st = pair.static_deflection
-    eccentricity_3, eccentricity_2 = pair.eccentricity
-    return NEUTRAL | {
-        "backlash": pair.backlash / y_st,
-        "damping_length": pair.damping_length / y_st,
-        "body_mass": pair.body_mass / pair.reduced_mass,
-        "bearing_stiffness": pair.bearing_stiffness / pair.stiffness_mean,
-        "bearing_damping_ratio": pair.bearing_damping_ratio,
-        "friction_coefficient": pair.friction_coefficient,
-        "initial_phase": pair.initial_phase,
-        "eccentricity_3": eccentricity_3 / y_st,
-        "eccentricity_2": eccentricity_2 / y_st,
-        "eccentricity_angle": pair.eccentricity_angle,
-    }
+    values = dict(zip(_WHEELS, pair.eccentricity, strict=True))
+    values |= {name: getattr(pair, name) for name in OF_THE_PAIR if name not in _WHEELS}
+    sizes = scales(pair)
+    return FROM_REST | {name: values[name] / sizes[FACTORS[name].scale] for name in OF_THE_PAIR}
 
 
 def pair_of(sample: Mapping[str, float | str], study: Pair) -> Pair:
-    """Return the parameters of a study with the values of a sample in place of its own.
+    """Return the pair of a study with the values of a sample.
 
-    The initial velocity and the kind of run are no parameters of a study; they are left out.
+    The initial velocity and the kind of run are set by the response curves of the sample.
     """
-    y_st = study.static_deflection
-    scales = {
-        "backlash": y_st,
-        "damping_length": y_st,
-        "body_mass": study.reduced_mass,
-        "bearing_stiffness": study.stiffness_mean,
-        "bearing_damping_ratio": 1.0,
-        "friction_coefficient": 1.0,
-        "initial_phase": 1.0,
-        "eccentricity_angle": 1.0,
-    }
-    changes: dict[str, object] = {
-        name: float(sample[name]) * scale for name, scale in scales.items()
-    }
-    changes["eccentricity"] = tuple(
-        float(sample[f"eccentricity_{wheel}"]) * y_st for wheel in (3, 2)
-    )
-    # No validation: the ranges of the settings are inside those of the model.
-    return study.model_copy(update=changes)
+    sizes = scales(study)
+    values = {name: float(sample[name]) * sizes[FACTORS[name].scale] for name in OF_THE_PAIR}
+    eccentricity = tuple(values.pop(name) for name in _WHEELS)
+    # Not validated: the ranges of the settings lie inside those of the model.
+    return study.model_copy(update=values | {"eccentricity": eccentricity})
 
 
 def left_alone(design: Design, study: Pair) -> str:
-    """Return a digest of all parameters of a study that a design leaves alone."""
+    """Return a digest of all parameters of a study that a design does not vary."""
     sample = stated(study) | dict.fromkeys(design.vary, 0.0)
     return pair_of(sample, study).digest()
 
@@ -74,14 +46,14 @@ def left_alone(design: Design, study: Pair) -> str:
 def unit_points(design: Design) -> np.ndarray:
     """Return the scrambled Sobol' points of a design, shape (points, varied factors).
 
-    Where a sample varies one factor only, the places of the others are NaN.
+    If a sample varies one factor only, the coordinates of the others are NaN.
     """
-    # Imported here: the pipeline looks at designs without drawing them, and this takes its time.
+    # This import is slow, and the pipeline reads designs without drawing samples.
     from scipy.stats import qmc
 
     points = qmc.Sobol(len(design.vary), seed=design.seed).random(design.points)
     if design.one_at_a_time:
-        # In turn by blocks: only neighbours in the sequence spread evenly.
+        # Each factor gets a block of the sequence, because only consecutive points spread evenly.
         turn = np.arange(design.points) * len(design.vary) // design.points
         points[turn[:, None] != np.arange(len(design.vary))] = np.nan
     return points
@@ -90,7 +62,7 @@ def unit_points(design: Design) -> np.ndarray:
 def samples(points: np.ndarray, design: Design, settings: Settings, study: Pair) -> list[Sample]:
     """Turn points of the unit cube, one row each, into samples.
 
-    What a point says nothing about has the value of the study, or the one that removes its effect.
+    Factors that a point does not set keep the value of the study.
     """
     base = stated(study) | design.fixed
     return [base | _values(row, design.vary, settings) for row in points]

@@ -1,4 +1,4 @@
-"""Figures of what the paper does not print: the regions of its parameters, and their say."""
+"""Figures of the open parameters: their compatible regions, and the sensitivity to them."""
 
 from collections.abc import Mapping
 from typing import Any
@@ -10,41 +10,19 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
+from gearmesh.identification.factors import FACTORS
 from gearmesh.identification.settings import Range
 from gearmesh.reproduction.figures import palette
 from gearmesh.reproduction.figures.canvas import WIDTH, styled
 
-SYMBOLS = {
-    "backlash": "$s/y_{st}$",
-    "damping_length": "$\\ell/y_{st}$",
-    "body_mass": "$m/m_{red}$",
-    "bearing_stiffness": "$c_b/C_s$",
-    "bearing_damping_ratio": "$\\zeta_b$",
-    "friction_coefficient": "$f_T$",
-    "initial_phase": "$p_0$",
-    "initial_velocity": "$y$′(0)",
-    "kind": "run",
-}
-
 _DENSITY = {"color": palette.PALE, "alpha": 0.6, "lw": 0}
-
-TICKS = {
-    "backlash": (2, 4, 8, 15),
-    "damping_length": (0.1, 0.25, 0.5, 1, 2),
-    "body_mass": (1, 10, 100, 1000),
-    "bearing_stiffness": (0.1, 1, 10, 100),
-    "bearing_damping_ratio": (0.005, 0.01, 0.03, 0.1),
-    "friction_coefficient": (0, 0.05, 0.1),
-    "initial_phase": (0, 0.25, 0.5, 0.75, 1),
-    "initial_velocity": (-1, 0, 1),
-}
 
 
 @styled
 def draw_regions(
     found: Mapping[str, Any], ranges: Mapping[str, Range], stated: Mapping[str, float]
 ) -> Figure:
-    """Draw where each parameter may lie, by the claims that hold together.
+    """Draw the region of each parameter that is compatible with the claims.
 
     Parameters
     ----------
@@ -87,14 +65,14 @@ def _draw_factor(axes: Axes, factor: str, found: Mapping[str, Any], bounds: Rang
     axes.set_ylim(-0.2, len(varied) - 0.1)
     axes.set_yticks(range(len(varied)), [readings[reading] for reading in varied])
     axes.tick_params(axis="y", length=0)
-    ticks = [tick for tick in TICKS[factor] if bounds.low <= tick <= bounds.high]
+    ticks = [tick for tick in FACTORS[factor].ticks if bounds.low <= tick <= bounds.high]
     labels = [f"{tick:g}".replace("-", "−") for tick in ticks]
     axes.set_xticks([bounds.unit(tick) for tick in ticks], labels)
-    axes.set_title(SYMBOLS[factor], pad=2)
+    axes.set_title(FACTORS[factor].label, pad=2)
 
 
 def _draw_shape(axes: Axes, shape: np.ndarray, base: float, height: float) -> None:
-    """Draw how densely parts of the range are filled, and how densely without evidence."""
+    """Draw the density of compatible samples over the range, and that of all samples (dashed)."""
     scale = height / shape.max()
     edges = np.linspace(0.0, 1.0, shape.size + 1)
     axes.stairs(base + scale * shape, edges, baseline=base, fill=True, **_DENSITY)
@@ -103,7 +81,7 @@ def _draw_shape(axes: Axes, shape: np.ndarray, base: float, height: float) -> No
 
 @styled
 def draw_sensitivity(found: Mapping[str, Any]) -> Figure:
-    """Draw which parameter has a say in which threshold: PAWN indices above chance.
+    """Draw the sensitivity of each threshold to each parameter: PAWN indices above chance.
 
     Parameters
     ----------
@@ -116,12 +94,12 @@ def draw_sensitivity(found: Mapping[str, Any]) -> Figure:
     shown = np.where(index > chance, index, np.nan)
     figure = Figure(figsize=(WIDTH, 0.21 * len(rows) + 0.9), layout="constrained")
     axes = figure.subplots()
-    shades = LinearSegmentedColormap.from_list("say", ["#eef5fa", palette.BLUE])
+    shades = LinearSegmentedColormap.from_list("index", ["#eef5fa", palette.BLUE])
     axes.imshow(shown, cmap=shades, vmin=0.0, vmax=0.7, aspect="auto")
     for i, j in np.argwhere(np.isfinite(shown)):
         ink = "white" if shown[i, j] > 0.4 else palette.INK
         axes.text(j, i, f"{shown[i, j]:.2f}", ha="center", va="center", color=ink, fontsize=7)
-    axes.set_xticks(range(len(factors)), [SYMBOLS[name] for name in factors])
+    axes.set_xticks(range(len(factors)), [FACTORS[name].label for name in factors])
     axes.set_yticks(range(len(rows)), [threshold_label(row) for row in rows])
     axes.tick_params(length=0, top=False, right=False)
     axes.tick_params(axis="x", labeltop=True, labelbottom=False)
@@ -130,7 +108,7 @@ def draw_sensitivity(found: Mapping[str, Any]) -> Figure:
 
 _MARKS = {"lubricant": "•", "material": "□", "both": "×"}
 _WORDS = {
-    "F2.1": "step left",
+    "F2.1": "remaining step",
     "F2.2": "□ against ×",
     "F2.3|near 0.66": "first jump",
     "F2.3|near 0.8": "second jump",
@@ -138,18 +116,18 @@ _WORDS = {
     "F2.6": "distance from inverse mesh",
     "F3.1|y_max": "onset of the bifurcation",
     "F3.2|end": "end of the loops",
-    "F3.4|ratio": "disorder below 0.8",
-    "F4.1|0.60": "unsteadiness at 0.60",
-    "F4.1|1.05": "unsteadiness at 1.05",
-    "F4.1|1.20": "unsteadiness at 1.20",
-    "F6.1|from": "more damped higher: from",
-    "F6.1|to": "more damped higher: to",
+    "F3.4|ratio": "spread of maxima below 0.8",
+    "F4.1|0.60": "stroboscopic spread at 0.60",
+    "F4.1|1.05": "stroboscopic spread at 1.05",
+    "F4.1|1.20": "stroboscopic spread at 1.20",
+    "F6.1|from": "5k exceeds k: from",
+    "F6.1|to": "5k exceeds k: to",
     "F6.2|5k": "end of the loops, 5k",
 }
 
 
 def threshold_label(column: str) -> str:
-    """Return the words for a measured value, with its variant."""
+    """Return the label of a measured value, with its variant."""
     name = next(name for name in _WORDS if column == name or column.startswith(f"{name}|"))
     variant = column.removeprefix(name).lstrip("|")
     letter, _, place = variant.partition("-")

@@ -1,4 +1,4 @@
-"""Everything that the samples tell, as one plain mapping: what `config/identified.yaml` holds."""
+"""All results of the identification as one mapping: the content of `config/identified.yaml`."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -9,8 +9,9 @@ import numpy as np
 
 from gearmesh.identification import inference, prediction, sensitivity, synthetic
 from gearmesh.identification.boxes import Box, prior_weights
+from gearmesh.identification.factors import KINDS
 from gearmesh.identification.inference import ENOUGH, Fit, effective_size
-from gearmesh.identification.settings import KINDS, Settings
+from gearmesh.identification.settings import Settings
 from gearmesh.identification.store import Samples
 from gearmesh.identification.wording import (
     Statement,
@@ -46,7 +47,7 @@ THRESHOLDS = (
     "F2.1|c-material",
     "F2.2|c",
 )
-"""Measured values whose sensitivity is told; each stands for its variants."""
+"""Measured values whose sensitivity is computed; each stands for all its variants."""
 
 
 @dataclass(frozen=True)
@@ -169,7 +170,7 @@ def findings(analysis: Analysis) -> dict[str, object]:
 
 
 def claims_table(analysis: Analysis, survey: Family, natural: Family) -> dict[str, object]:
-    """Return for each claim where it holds: shares of the plausible space, and what it costs."""
+    """Return the share of the plausible space in which each claim holds."""
     even = analysis.samples.of(SURVEY)
     found: dict[str, Any] = {}
     held_even, held_natural = analysis.held(even), analysis.held(natural.samples)
@@ -212,7 +213,7 @@ def _share_of(meets: np.ndarray, prior: np.ndarray) -> dict[str, object]:
 
 
 def regions(analysis: Analysis, family: Family) -> dict[str, object]:
-    """Return for each factor where it may lie, by the largest set of claims that hold together."""
+    """Return the region of each factor that the largest set of compatible claims allows."""
     evidence = analysis.evidence(family)
     fit = analysis.fit(family, evidence)
     table: dict[str, object] = {}
@@ -245,7 +246,7 @@ def regions(analysis: Analysis, family: Family) -> dict[str, object]:
 
 
 def sensitivities(analysis: Analysis) -> dict[str, object]:
-    """Return for each threshold the say of each factor, over the plausible space."""
+    """Return the sensitivity of each threshold to each factor, over the plausible space."""
     even = analysis.samples.of(SURVEY)
     factors = analysis.settings.designs[SURVEY].vary
     found: dict[str, Any] = {}
@@ -274,7 +275,7 @@ def _threshold_columns(samples: Samples) -> list[str]:
 
 
 def predictions(analysis: Analysis, family: Family) -> dict[str, object]:
-    """Return how well one half of the claims predicts the other."""
+    """Return how well one half of the claims predicts the other half."""
     weight = analysis.weights(family.samples)
     evidence = analysis.evidence(family)
     cuts = prediction.halves(evidence, analysis.settings.together, CUTS, seed=1)
@@ -344,7 +345,7 @@ def recoveries(analysis: Analysis, family: Family) -> dict[str, object]:
 def beside(analysis: Analysis) -> dict[str, object]:
     """Return how far each parameter alone may be moved from its value in the study.
 
-    Until then the claims hold that the ledger expects to be reproduced.
+    Up to there, all claims hold that the ledger expects to be reproduced.
     """
     samples = analysis.samples.of(BESIDE)
     held = analysis.held(samples)
@@ -358,19 +359,22 @@ def beside(analysis: Analysis) -> dict[str, object]:
         below = order[values[order] <= others[0]][::-1]
         above = order[values[order] > others[0]]
         found[factor] = {
-            side: _stretch(values, order, held, expected)
+            side: _reach(values, order, held, expected)
             for side, order in (("down", below), ("up", above))
         }
     return found
 
 
-def _stretch(
+def _reach(
     values: np.ndarray,
     order: np.ndarray,
     held: Mapping[str, np.ndarray],
     expected: Sequence[str],
 ) -> dict[str, object]:
-    """Return how far one may go along samples, in their order, and which claims fail then."""
+    """Return the last value, in the order of the samples, at which all expected claims hold.
+
+    The claims that fail at the next sample are listed too.
+    """
     last = None
     for i in order:
         failing = [name for name in expected if not held[name][i]]
@@ -381,7 +385,7 @@ def _stretch(
 
 
 def run_out(analysis: Analysis, design: str) -> dict[str, object]:
-    """Return for each claim up to which eccentricity, the larger one in y_st, it always holds."""
+    """Return for each claim the larger eccentricity in y_st up to which it always holds."""
     samples = analysis.samples.of(design)
     larger = np.maximum(samples.values["eccentricity_3"], samples.values["eccentricity_2"])
     found: dict[str, Any] = {}
@@ -397,5 +401,5 @@ def _mean(values: Sequence[float]) -> float:
 
 
 def _rounded(value: float) -> float | None:
-    """Keep four significant digits, the samples know no more; None for what there is none of."""
+    """Keep four significant digits, as the samples are no more accurate; None if not finite."""
     return float(f"{value:.4g}") if np.isfinite(value) else None

@@ -1,4 +1,4 @@
-"""The samples that meet most claims, and the box around them that a focused design fills."""
+"""The samples that meet most claims, and the box of a focused design around them."""
 
 from collections.abc import Sequence
 
@@ -11,11 +11,11 @@ from gearmesh.identification.wording import closeness, statements, weight_of_cla
 from gearmesh.reproduction.claims import Claim
 
 BEST = 64
-"""How many of the best samples span the box of a focused design."""
+"""Number of best samples that span the box of a focused design."""
 
 
 def best(held: np.ndarray, fit: np.ndarray, count: int = BEST) -> np.ndarray:
-    """Return the indices of the samples that meet most claims; of equal ones the best fitting."""
+    """Return the indices of the samples that meet most claims; ties go to the best fit."""
     return np.lexsort((-fit, -held))[:count]
 
 

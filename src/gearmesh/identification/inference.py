@@ -1,8 +1,8 @@
-"""Which values of the open parameters fit what the paper says.
+"""Values of the open parameters that are compatible with the claims of the paper.
 
-Approximate Bayesian computation by rejection: samples of the prior count by how well what they
-measure fits the paper's words (Beaumont, Annu. Rev. Stat. Appl. 6, 2019). The prior is even over
-the ranges of the settings, on their scales.
+The method is approximate Bayesian computation by rejection (Beaumont, Annu. Rev. Stat. Appl. 6,
+2019). The weight of a sample of the prior states how well its measured values fit the words of the
+paper. The prior is even over the ranges of the settings, on their scales.
 """
 
 from collections.abc import Mapping, Sequence
@@ -20,19 +20,19 @@ CONTRADICTED_BELOW = 0.01
 """A claim that holds in less than this share is contradicted."""
 
 ENOUGH = 40
-"""Samples, in effect, that an inference needs; with fewer, claims are forgiven one by one."""
+"""Effective number of samples that an inference needs. With fewer, more statements may fail."""
 
 LEVEL = 0.95
 """Probability of the regions."""
 
 PARTS = 12
-"""Equal parts of a factor's range that tell where in it the evidence lies."""
+"""Number of equal parts of a factor's range in which the density is given."""
 
 _GRID = 401
 
 
 def effective_size(weights: np.ndarray) -> float:
-    """Return the number of equal samples that weights are worth (Kish)."""
+    """Return the effective number of weighted samples (Kish)."""
     total = weights.sum()
     return float(total**2 / np.sum(weights**2)) if total > 0 else 0.0
 
@@ -53,14 +53,14 @@ def standing(value: float) -> str:
 
 @dataclass(frozen=True)
 class Fit:
-    """What is left of the prior.
+    """Weights of the samples after a fit.
 
     Attributes
     ----------
     weights : ndarray, shape (n_samples,)
         With sum 1.
     forgiven : int
-        How many statements a sample may miss and still count; 0 if enough samples miss none.
+        How many statements a sample may miss; 0 if enough samples miss none.
     """
 
     weights: np.ndarray
@@ -68,7 +68,7 @@ class Fit:
 
     @property
     def size(self) -> float:
-        """Samples, in effect."""
+        """Effective number of samples."""
         return effective_size(self.weights)
 
 
@@ -82,7 +82,7 @@ def fit(evidence: Sequence[np.ndarray], prior: np.ndarray, enough: float = ENOUG
     prior : ndarray, shape (n_samples,)
         Weights that make the samples an even design.
     enough : float
-        Effective number of samples below which one statement more is forgiven.
+        Effective number of samples below which a sample may miss one statement more.
     """
     fits = np.array(evidence)
     missed = np.sum(fits == 0.0, axis=0)
@@ -97,8 +97,8 @@ def fit(evidence: Sequence[np.ndarray], prior: np.ndarray, enough: float = ENOUG
 def region(places: np.ndarray, weights: np.ndarray, level: float = LEVEL) -> tuple[float, float]:
     """Return the central interval of a factor, on the unit interval.
 
-    The samples are smoothed by a kernel of Silverman's width first: a few of them say nothing
-    about the ends of a region.
+    The samples are first smoothed by a kernel of Silverman's width, because a few samples do not
+    resolve the ends of a region.
     """
     kept = weights > 0
     places, weights = places[kept], weights[kept] / weights[kept].sum()
@@ -109,7 +109,7 @@ def region(places: np.ndarray, weights: np.ndarray, level: float = LEVEL) -> tup
 
 
 def shape(places: np.ndarray, weights: np.ndarray, parts: int = PARTS) -> np.ndarray:
-    """Return how densely the equal parts of a factor's range are filled, 1 where as the prior."""
+    """Return the density in equal parts of a factor's range, relative to the prior."""
     filled, _ = np.histogram(places, parts, (0.0, 1.0), weights=weights)
     return parts * filled / weights.sum()
 
@@ -146,8 +146,8 @@ def joint_sets(
     Returns
     -------
     list of (names of the claims that do not hold, which samples meet all others)
-        Sets that no other set found contains, by their size and then by their share of the
-        prior, `most` at the most.
+        Sets that are not part of another set, sorted by size and then by share of the prior; at
+        most `most`.
     """
     names = list(held)
     patterns, which = np.unique(np.array(list(held.values())).T, axis=0, return_inverse=True)

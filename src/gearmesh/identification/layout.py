@@ -1,4 +1,4 @@
-"""Where samples lie in files, and how designs are cut into batches and follow one another."""
+"""Files of the identification, and the batches and chains of its designs."""
 
 from pathlib import Path
 

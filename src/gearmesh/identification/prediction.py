@@ -1,4 +1,4 @@
-"""Does the inference foretell what it has not seen: fit half of the claims, predict the others."""
+"""Test of the inference: fit one half of the claims and predict the other half."""
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
@@ -21,7 +21,7 @@ class Prediction:
     before, after : dict of str to float
         Held-out claim -> its probability before and after the fit to the other claims.
     covered : dict of str to bool
-        Column of a held-out number -> whether the paper's number lies where the fit expects it.
+        Column of a held-out number -> whether the number lies in the predicted interval.
     narrowed : dict of str to float
         Column -> length of that interval, as a share of the one before the fit.
     found : Fit
@@ -62,7 +62,7 @@ def halves(
     for _ in range(count):
         order = [name for i in rng.permutation(len(groups)) for name in groups[i]]
         cuts.append((order[: len(order) // 2], order[len(order) // 2 :]))
-    # A group that stands across the middle goes to the first half as a whole.
+    # A group that the cut would split goes to the first half as a whole.
     return [_healed(first, second, groups) for first, second in cuts]
 
 

@@ -1,9 +1,9 @@
-"""Which parameter moves which threshold: PAWN indices from the samples at hand.
+"""Sensitivity of the thresholds to the parameters: PAWN indices of the samples.
 
-The index of a factor is the distance of Kolmogorov and Smirnov between the distribution of a
-measured value over all samples and that over a slice of the factor's range, in the median over
-the slices (Pianosi and Wagener, Environ. Model. Softw. 67, 2015, and 108, 2018): 0 if the factor
-has no say, towards 1 the more it decides. Values that do not exist form a class of their own.
+The Kolmogorov-Smirnov distance compares the distribution of a measured value over a slice of the
+factor's range with that over all samples. The index is the median of this distance over the slices
+(Pianosi and Wagener, Environ. Model. Softw. 67, 2015, and 108, 2018). It is 0 for a factor without
+influence and 1 at most. Values that do not exist form a class of their own.
 """
 
 from dataclasses import dataclass
@@ -58,7 +58,7 @@ class Index:
     low, high : float
         Its 90 % interval by bootstrap.
     chance : float
-        What a factor that has no say would reach in one case of twenty.
+        Index that a factor without influence exceeds in one case of twenty.
     """
 
     value: float
@@ -77,9 +77,9 @@ def index(
     places, values, slices
         As for `pawn`.
     resamples : int
-        Of the bootstrap, and of the permutations that tell what chance gives.
+        Number of resamples of the bootstrap, and of permutations for `chance`.
     seed : int
-        Of both.
+        Seed of both.
     """
     rng = np.random.default_rng(seed)
     which, ranks = _slice(places, slices), _ranks(values)
@@ -89,6 +89,6 @@ def index(
         again.append(_index(which[drawn], ranks[drawn], slices))
     nothing = [_index(rng.permutation(which), ranks, slices) for _ in range(resamples)]
     value = _index(which, ranks, slices)
-    # Repeated draws raise a distance of distributions: the interval is put around the index.
+    # Resampling increases the distance, so the interval is centred on the index itself.
     low, high = value + np.percentile(again, [5, 95]) - np.mean(again)
     return Index(value, max(float(low), 0.0), float(high), float(np.percentile(nothing, 95)))

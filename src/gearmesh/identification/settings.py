@@ -7,37 +7,19 @@ from typing import Literal, Self
 
 from pydantic import Field, field_validator, model_validator
 
+from gearmesh.identification.factors import FACTORS, KINDS
 from gearmesh.study import yamlfile
 from gearmesh.study.schema import Section, validate
 
-KINDS = ("separate", "up", "down")
-"""Kinds of run: each tuning from rest, or from the end of its lower or its higher neighbour."""
-
-FACTORS = {
-    "backlash": "s/y_st",
-    "damping_length": "ℓ/y_st",
-    "body_mass": "m/m_red",
-    "bearing_stiffness": "c_b/C_s",
-    "bearing_damping_ratio": "ζ_b",
-    "friction_coefficient": "f_T",
-    "initial_phase": "p_0",
-    "initial_velocity": "y'(0)/(y_st Ω_s)",
-    "kind": "kind of run",
-    "eccentricity_3": "e_3/y_st",
-    "eccentricity_2": "e_2/y_st",
-    "eccentricity_angle": "Δ",
-}
-"""What is open, and its symbol: lengths in static deflections, masses in m_red."""
-
 
 class Range(Section):
-    """Where a factor may lie."""
+    """Plausible range of a factor."""
 
     low: float
     high: float
     scale: Literal["linear", "log"] = "linear"
-    least: float | None = Field(None, description="value that assumes least, if there is one")
-    reason: str = Field(min_length=1, description="why these ends")
+    least: float | None = Field(None, description="value that removes the effect, if there is one")
+    reason: str = Field(min_length=1, description="why the range ends there")
 
     @model_validator(mode="after")
     def _is_a_range(self) -> Self:
@@ -64,8 +46,9 @@ class Range(Section):
 class Design(Section):
     """A set of samples.
 
-    `fixed` factors keep one value, all others that of the study. `around` names the design whose
-    best samples span the box that this one fills, in place of the whole space.
+    The factors in `vary` vary. Those in `fixed` have one value, and all others keep the value of
+    the study. With `around`, the samples fill the box that the best samples of that design span;
+    otherwise they fill the whole space.
     """
 
     purpose: str = Field(min_length=1)
@@ -98,15 +81,15 @@ class Design(Section):
 
     @property
     def space(self) -> str:
-        """What its samples are places in: the factors that vary, in order, and the fixed ones."""
+        """The space of its samples: the factors that vary, in order, and the fixed ones."""
         return ", ".join([*self.vary, *(f"{f} = {self.fixed[f]}" for f in sorted(self.fixed))])
 
 
 class Wording(Section):
-    """How the paper words a number, and so how exactly it may be taken.
+    """How exactly the paper's words state a number.
 
-    A measured value fits in full up to `sure` from the number, and not at all beyond the
-    tolerance of the ledger; in between the weight falls off in a straight line.
+    The weight of a measured value is 1 up to a distance `sure` from the number. From there it falls
+    linearly to 0 at the tolerance of the ledger.
     """
 
     claim: str
@@ -123,11 +106,11 @@ class Settings(Section):
     designs: dict[str, Design]
     wordings: tuple[Wording, ...]
     together: tuple[tuple[str, ...], ...] = Field(
-        (), description="claims that say the same thing, never held out one without the other"
+        (), description="claims that state the same number; they are held out together"
     )
 
     def sampling(self, name: str) -> str:
-        """Return a digest of all that decides the samples of a design and how they are cut."""
+        """Return a digest of all that determines the samples of a design and its batches."""
         design = self.designs[name]
         ranges = {
             f: [self.ranges[f].value(place) for place in (0.0, 0.5, 1.0)]

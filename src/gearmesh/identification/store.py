@@ -10,7 +10,8 @@ import xarray as xr
 
 from gearmesh.errors import InputError
 from gearmesh.identification.design import Sample
-from gearmesh.identification.settings import FACTORS, KINDS, Design
+from gearmesh.identification.factors import FACTORS, KINDS
+from gearmesh.identification.settings import Design
 
 
 @dataclass(frozen=True)
@@ -96,7 +97,7 @@ def _number(value: float | str) -> float:
 
 
 def write(path: Path, content: xr.Dataset, title: str) -> None:
-    """Write a dataset, whole or not at all."""
+    """Write a dataset; if this fails, no partial file is left."""
     content = content.assign_attrs(Conventions="CF-1.11", title=title)
     temporary = path.with_name(f".{path.name}.{os.getpid()}")
     try:
@@ -134,7 +135,7 @@ def write_all(path: Path, files: Sequence[Path]) -> None:
 
 
 def join(contents: Sequence[xr.Dataset]) -> xr.Dataset:
-    """Put samples one behind the other; a column that some lack is NaN there."""
+    """Concatenate samples; a column that is missing in some of them is NaN there."""
     return xr.concat(contents, "sample", join="outer", coords="minimal", compat="override")
 
 
@@ -142,7 +143,7 @@ def open_file(path: Path) -> xr.Dataset:
     """Read a file into memory; raises InputError if it is missing or damaged."""
     try:
         with xr.open_dataset(path, engine="netcdf4") as content:
-            # How a text was stored would cut short the longer ones that join it.
+            # The stored length of texts would truncate longer ones that are concatenated to them.
             return content.load().drop_encoding()
     except (OSError, ValueError) as error:
         raise InputError(f"{path}: missing or damaged ({error}); run make identify") from None

@@ -1,4 +1,4 @@
-"""Figure of samples over the parameters that decide most: which of them meet the claims."""
+"""Figure of the samples that meet the claims, over the most influential parameters."""
 
 from collections.abc import Sequence
 
@@ -7,25 +7,25 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from gearmesh.identification.figures import SYMBOLS, TICKS
+from gearmesh.identification.factors import FACTORS
 from gearmesh.identification.store import Samples
 from gearmesh.identification.wording import statements, weight_of_claims
 from gearmesh.reproduction.claims import Claim
 from gearmesh.reproduction.figures import palette
 from gearmesh.reproduction.figures.canvas import WIDTH, styled
-from gearmesh.reproduction.thresholds import FIRST, LAST
+from gearmesh.reproduction.frequencies import FIRST, LAST
 
 
 @styled
 def draw_supports(samples: Samples, ledger: Sequence[Claim]) -> Figure:
-    """Draw how many claims each sample meets, over the parameters that decide most.
+    """Draw how many claims each sample meets, over the most influential parameters.
 
     Parameters
     ----------
     samples : Samples
         Samples of the plausible space.
     ledger : sequence of Claim
-        Claims; those that samples say nothing about are left out.
+        Claims. Those that were not measured on the samples are left out.
     """
     tested = {column.partition("|")[0] for column in samples.measured}
     stated = statements([claim for claim in ledger if claim.id in tested])
@@ -37,7 +37,7 @@ def draw_supports(samples: Samples, ledger: Sequence[Claim]) -> Figure:
     _scatter(right, samples, "damping_length", "backlash", failing)
     mass = np.array(left.get_xlim())
     for nu, name in ((FIRST, "0.6"), (LAST, "1.2")):
-        # A body on its supports swings by itself at nu_s = sqrt(c_b/C_s m_red/m).
+        # A body on its bearings has its natural frequency at ν_s = √(c_b/C_s · m_red/m).
         left.plot(mass, nu**2 * mass, color=palette.RED, lw=0.8)
         left.annotate(
             name,
@@ -73,10 +73,10 @@ def _scatter(axes: Axes, samples: Samples, x: str, y: str, failing: np.ndarray) 
         axes.scatter(*places, s=size, color=colour, lw=0)
     axes.set_xscale("log")
     axes.set_yscale("log")
-    axes.set_xticks(TICKS[x], [f"{tick:g}" for tick in TICKS[x]])
-    axes.set_yticks(TICKS[y], [f"{tick:g}" for tick in TICKS[y]])
+    axes.set_xticks(FACTORS[x].ticks, [f"{tick:g}" for tick in FACTORS[x].ticks])
+    axes.set_yticks(FACTORS[y].ticks, [f"{tick:g}" for tick in FACTORS[y].ticks])
     axes.minorticks_off()
     axes.set_xlim(samples.values[x].min(), samples.values[x].max())
     axes.set_ylim(samples.values[y].min(), samples.values[y].max())
-    axes.set_xlabel(SYMBOLS[x])
-    axes.set_ylabel(SYMBOLS[y])
+    axes.set_xlabel(FACTORS[x].label)
+    axes.set_ylabel(FACTORS[y].label)

@@ -13,8 +13,9 @@ from gearmesh.identification.design import Sample, pair_of, samples
 from gearmesh.identification.settings import Settings
 from gearmesh.reproduction.claims.checking import MEASURES
 from gearmesh.reproduction.claims.evidence import Evidence, NotInStudy, NotLocated
-from gearmesh.reproduction.claims.fig6 import LESS, MORE, NU_OF_THE_CROSSING
-from gearmesh.reproduction.thresholds import NONLINEAR, STROBED_AT, locate_on
+from gearmesh.reproduction.claims.fig6 import LESS, MORE
+from gearmesh.reproduction.frequencies import CROSSING, FIG_4
+from gearmesh.reproduction.thresholds import NONLINEAR, locate_on
 from gearmesh.study.pair import Pair
 
 VARIANTS = (
@@ -24,14 +25,14 @@ VARIANTS = (
     *(f"{letter}-{symbol}" for letter in NONLINEAR for symbol in ("material", "both")),
     "c-material-5x",
 )
-"""Variants of which the paper claims something that depends on the open parameters."""
+"""Variants with claims that depend on the open parameters."""
 
 TIME_COURSES = (
-    *(("c-lubricant", nu) for nu in STROBED_AT),
-    (LESS, NU_OF_THE_CROSSING),
-    (MORE, NU_OF_THE_CROSSING),
+    *(("c-lubricant", nu) for nu in FIG_4),
+    (LESS, CROSSING),
+    (MORE, CROSSING),
 )
-"""Cases whose time course a claim looks at."""
+"""Cases whose time course a claim uses."""
 
 _GROUP = 16
 
@@ -52,15 +53,15 @@ def compute(
     Parameters
     ----------
     settings : Settings
-        They say what the design varies, and how it is cut into batches.
+        Ranges and designs.
     study : Pair
-        All parameters that the design leaves alone.
+        Values of all parameters that the design does not vary.
     name : str
         The design.
     index : int
         The batch, from 0.
     places : ndarray, shape (points, varied factors)
-        Places of the whole design in the unit cube.
+        Points of the whole design in the unit cube.
     """
     design = settings.designs[name]
     size = design.points_per_job
@@ -99,7 +100,7 @@ def measure_curves(curves: Mapping[str, SampledCurve], pair: Pair) -> Measured:
         try:
             measured, _ = MEASURES[claim](evidence)
         except (NotInStudy, NotLocated, ArithmeticError, ValueError):
-            # What the claim speaks of does not exist in this motion.
+            # The quantity of the claim does not exist in this motion.
             continue
         found.update(_columns(claim, measured))
     return found

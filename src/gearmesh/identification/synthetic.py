@@ -1,8 +1,8 @@
-"""Papers whose parameters are known, to see whether the inference finds them.
+"""Synthetic papers with known parameters, to test whether the inference finds them.
 
-A synthetic paper states what the model measures at a sample that no inference has seen, as exactly
-as the real one does: numbers rounded so that the rounding is the ledger's tolerance, orders and
-shapes as yes or no, and what does not exist as absent.
+A synthetic paper states the results of the model at a sample that the inference does not use, with
+the accuracy of the real paper. Numbers are rounded to the tolerance of the ledger, orders and
+shapes are yes or no, and quantities that do not exist are stated as absent.
 """
 
 from collections.abc import Mapping, Sequence
@@ -65,7 +65,7 @@ def evidence(
 
 @dataclass(frozen=True)
 class Recovery:
-    """What an inference makes of one synthetic paper.
+    """Result of the inference for one synthetic paper.
 
     Attributes
     ----------

@@ -1,4 +1,4 @@
-"""The findings as a small file: written by the identification, read by report and notebook."""
+"""The results as a small file: written by the identification, read by report and notebook."""
 
 from pathlib import Path
 from typing import Any
@@ -23,7 +23,7 @@ Findings = dict[str, Any]
 
 
 class _Dumper(yaml.SafeDumper):
-    """Writes what is short in one line, and everything where it stands, without anchors."""
+    """Dumper that writes short values in one line and uses no anchors."""
 
     def represent_mapping(
         self, tag: str, mapping: Any, flow_style: bool | None = None

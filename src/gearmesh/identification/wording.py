@@ -1,4 +1,4 @@
-"""What the paper's words say about a measured value: whether it fits, and how well."""
+"""How well a measured value fits the words of the paper."""
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
@@ -15,16 +15,16 @@ Columns = Mapping[str, np.ndarray]
 
 @dataclass(frozen=True, slots=True)
 class Statement:
-    """One thing that a paper says: one quantity of one claim.
+    """One statement of a paper: one quantity of one claim.
 
     Attributes
     ----------
     claim, quantity : str
-        Id of the claim, and the name of the quantity within it ('' if it has but one).
+        Id of the claim, and the name of the quantity within it ('' if there is only one).
     low, high : float
-        Ends of what fits.
+        Ends of the values that fit.
     sure_low, sure_high : float
-        Ends of what fits in full; from there the weight falls to 0 at the outer ends.
+        Ends of the values with weight 1. From there the weight falls to 0 at the outer ends.
     """
 
     claim: str
@@ -50,7 +50,7 @@ class Statement:
         return 0.5 * (self.low + self.high)
 
     def weight(self, value: np.ndarray) -> np.ndarray:
-        """Return how well values fit, 0 to 1; what does not exist does not fit."""
+        """Return how well values fit, 0 to 1; a value that does not exist has 0."""
         with np.errstate(invalid="ignore", divide="ignore"):
             rising = np.where(
                 value >= self.sure_low, 1.0, self._slope(value, self.low, self.sure_low)
@@ -67,12 +67,12 @@ class Statement:
 
 
 def statements(ledger: Iterable[Claim], wordings: Sequence[Wording] = ()) -> list[Statement]:
-    """Return what the claims of a ledger say, in its order, with the wordings of their numbers.
+    """Return the statements of a ledger, in its order, with the wordings of their numbers.
 
     Raises
     ------
     InputError
-        If a wording speaks of something that the ledger does not state as a number.
+        If a wording refers to something that the ledger does not state as a number.
     """
     sure = {(wording.claim, wording.quantity): wording.sure for wording in wordings}
     found = []
@@ -95,17 +95,17 @@ def statements(ledger: Iterable[Claim], wordings: Sequence[Wording] = ()) -> lis
 
 
 def columns_of(statement: Statement, columns: Iterable[str]) -> list[str]:
-    """Return the columns that a statement speaks of: one for each variant, or the only one."""
+    """Return the columns of a statement: one for each variant, or a single one."""
     return [c for c in columns if c == statement.name or c.startswith(f"{statement.name}|")]
 
 
 def weights(statement: Statement, measured: Columns) -> np.ndarray:
-    """Return how well each sample fits a statement: its worst variant counts.
+    """Return how well each sample fits a statement; the worst variant counts.
 
     Returns
     -------
     ndarray, shape (n_samples,)
-        0 to 1; 0 also where the statement speaks of what does not exist.
+        0 to 1; also 0 if the quantity does not exist.
     """
     about = columns_of(statement, measured)
     size = len(next(iter(measured.values())))
@@ -115,10 +115,10 @@ def weights(statement: Statement, measured: Columns) -> np.ndarray:
 
 
 def closeness(statement: Statement, measured: Columns) -> np.ndarray:
-    """Return how close each sample comes to a statement: 1 if it fits, less the farther off.
+    """Return how close each sample comes to a statement: 1 if it fits, less with the distance.
 
-    Tells better misses from worse ones, where the weights are 0 for both. Only the miss of a
-    number has a scale, its tolerance; the miss of an order or a shape counts 0.
+    This ranks samples that do not fit, for which the weights are all 0. Only numbers have a scale
+    for the distance, their tolerance; for an order or a shape that fails the result is 0.
     """
     fits = weights(statement, measured) > 0
     about = columns_of(statement, measured)
@@ -131,7 +131,7 @@ def closeness(statement: Statement, measured: Columns) -> np.ndarray:
 
 
 def weight_of_claims(found: Sequence[Statement], measured: Columns) -> dict[str, np.ndarray]:
-    """Return how well each sample fits each claim: the product over what it states."""
+    """Return how well each sample fits each claim: the product over its statements."""
     result: dict[str, np.ndarray] = {}
     for statement in found:
         weight = weights(statement, measured)

@@ -117,8 +117,8 @@ def sweep(
     over : mapping of str to sequence, optional
         Parameters to vary and their values, as ``{"backlash": ["40 um", "8 y_st"]}``.
     direction : {"up", "down"}, optional
-        Let each run go on from the end of the run at the neighbouring ν_s, below or above. By
-        default all runs start alike.
+        Start each run from the end of the run at the next lower (``"up"``) or higher ν_s. By
+        default all runs have the same initial condition.
     revolutions, kept, start, tolerance
         As for `simulate`.
 

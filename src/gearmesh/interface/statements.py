@@ -50,7 +50,7 @@ def read_variants(values: str | Variant | Iterable[str | Variant]) -> list[Varia
 
 
 def read_frequency(nu: float) -> float:
-    """Return a mesh frequency ν_s; raises InputError if it is none."""
+    """Return a mesh frequency ν_s; raises InputError if the value is not one."""
     try:
         return read_nu(nu.item() if isinstance(nu, np.generic) else nu)
     except ValueError as error:
@@ -63,7 +63,7 @@ def read_frequencies(nu: float | Sequence[float] | np.ndarray) -> list[float]:
     if not found:
         raise InputError("nu: none given; allowed is one frequency or several")
     if len(set(found)) < len(found):
-        raise InputError("nu: a frequency stands there twice; allowed is each once")
+        raise InputError("nu: a frequency occurs twice; allowed is each once")
     return found
 
 
@@ -79,7 +79,7 @@ def with_settings(pair: Pair, start: Start | None = None, **settings: object) ->
 
 
 def _length(value: object) -> object:
-    """Take a bare number as a number of static deflections."""
+    """Return a bare number as a number of static deflections."""
     if isinstance(value, int | float | np.number) and not isinstance(value, bool):
         return f"{float(value)!r} y_st"
     return value

@@ -212,7 +212,7 @@ _FACTS: dict[str, Callable[..., object]] = {
     "cases": lambda plan, letter: (
         plan.pair,
         [(case.variant.name, case.nu, case.time_course) for case in plan.letters[letter]],
-        plan.study.plan.case_files,
+        (plan.study.plan.case_files, plan.study.plan.direction),
     ),
     "datasets": lambda plan: (plan.study.title, plan.pair, _grid(plan.study)),
     "thresholds": lambda plan: (plan.pair, plan.study.variants),

@@ -4,7 +4,6 @@ import platform
 from collections import Counter
 from collections.abc import Iterable
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -43,12 +42,13 @@ def derived(study: Study) -> Iterable[Parameter]:
         yield Parameter(quantity.name, quantity.symbol, quantity.formula, value)
 
 
-def _quantity(value: Any, unit: str) -> str:
-    if isinstance(value, tuple) and value and not isinstance(value[0], tuple):
-        return ", ".join(_quantity(item, unit) for item in dict.fromkeys(value))
+def _quantity(value: float | tuple[float, ...] | tuple[tuple[float, float], ...], unit: str) -> str:
     if isinstance(value, tuple):
-        harmonics = (f"({number(c)}, {number(s)})" for c, s in value)
-        return f"{', '.join(harmonics)} {unit}" if value else "none"
+        harmonics = [f"({number(c[0])}, {number(c[1])})" for c in value if isinstance(c, tuple)]
+        if harmonics:
+            return f"{', '.join(harmonics)} {unit}"
+        numbers = dict.fromkeys(item for item in value if not isinstance(item, tuple))
+        return ", ".join(_quantity(item, unit) for item in numbers) or "none"
     if unit == "rad":
         return f"{number(float(np.degrees(value)))}°"
     return number(value) + ("" if unit == "1" else f" {unit.replace('*', ' ')}")

@@ -1,29 +1,31 @@
-"""The findings in words and tables, for the report and for the notebook."""
+"""The results of the identification in words and tables, for the report and the notebook."""
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
 from gearmesh.identification.design import Sample, stated
-from gearmesh.identification.settings import FACTORS, Range, Settings
+from gearmesh.identification.factors import FACTORS
+from gearmesh.identification.settings import Range, Settings
 from gearmesh.report.presentation import environment, number
 from gearmesh.reproduction.claims import REPRODUCED, Claim
 from gearmesh.study.pair import Pair
 
 ANY = "any"
-"""What is said of a parameter that the claims say nothing about."""
+"""Text for a parameter that the claims do not restrict."""
 
 OPEN = 0.05
-"""A region that comes closer than this to an end of the range, as a share of it, is not bounded
-there: if the claims said nothing, it would end half of this away."""
+"""A region that ends closer than this to an end of the range, as a share of it, is open there.
+
+Without any restriction by the claims, a region of 95 % ends at half this distance."""
 
 NARROW = 0.6
-"""A region shorter than this share of the plausible range says something about a parameter."""
+"""A region shorter than this share of the plausible range restricts a parameter."""
 
 
 @dataclass(frozen=True, slots=True)
 class ParameterRow:
-    """Where one parameter may lie, as text."""
+    """The compatible region of one parameter, as text."""
 
     name: str
     symbol: str
@@ -81,12 +83,12 @@ def section(
             claims=claim_rows(found["claims"], ledger),
             error=max(entry["error"] for entry in found["claims"].values()),
             pinned=[
-                FACTORS[name]
+                FACTORS[name].symbol
                 for name, region in factors.items()
                 if region.get("of the prior", 1.0) < NARROW
             ],
             free=[
-                FACTORS[name]
+                FACTORS[name].symbol
                 for name, region in factors.items()
                 if name != "kind" and within(region["region"], settings.ranges[name]) == ANY
             ],
@@ -97,7 +99,7 @@ def section(
 
 
 def run_out_costs(found: Mapping[str, Any], expected: Sequence[str]) -> dict[str, Any]:
-    """Return which claims run-out costs, with friction and without it."""
+    """Return which claims fail because of run-out, with friction and without it."""
     bears, alone = (
         {name: most for name, most in found[words].items() if name in expected}
         for words in ("with friction", "without friction")
@@ -127,19 +129,21 @@ def parameter_rows(
     for name, region in found["regions"]["plausible"]["factors"].items():
         if name == "kind":
             likely = ", ".join(f"{kind} {round(100 * p)} %" for kind, p in region.items())
-            yield ParameterRow("", FACTORS[name], ANY, likely, "separate", str(values[name]), "")
+            yield ParameterRow(
+                "", FACTORS[name].symbol, ANY, likely, "separate", str(values[name]), ""
+            )
             continue
         bounds = settings.ranges[name]
         yield ParameterRow(
             name.replace("_", " "),
-            FACTORS[name],
+            FACTORS[name].symbol,
             _interval([bounds.low, bounds.high]),
             within(region["region"], bounds),
             within(natural[name]["region"], bounds)
             if name in natural
             else _number(bounds.least or 0.0),
             _number(float(values[name]), 4),
-            _stretch(found["beside"].get(name), float(values[name])),
+            _alone(found["beside"].get(name), float(values[name])),
         )
 
 
@@ -149,7 +153,7 @@ def _interval(ends: Sequence[float]) -> str:
 
 
 def within(region: Sequence[float], bounds: Range) -> str:
-    """Say where a parameter lies; an end of the plausible range is none of the claims' doing."""
+    """Return a region as text; ends at those of the plausible range are left out."""
     low, high = region
     return _between(
         low if bounds.unit(low) > OPEN else None, high if bounds.unit(high) < 1.0 - OPEN else None
@@ -157,7 +161,7 @@ def within(region: Sequence[float], bounds: Range) -> str:
 
 
 def _between(low: float | None, high: float | None) -> str:
-    """Say what lies between two ends, where there are any."""
+    """Return an interval as text; either end may be open."""
     if low is not None and high is not None:
         return _interval([low, high])
     if low is not None:
@@ -165,8 +169,8 @@ def _between(low: float | None, high: float | None) -> str:
     return ANY if high is None else f"up to {_number(high)}"
 
 
-def _stretch(beside: Mapping[str, Any] | None, value: float) -> str:
-    """Say how far a parameter may be moved alone, and what fails then."""
+def _alone(beside: Mapping[str, Any] | None, value: float) -> str:
+    """Return as text how far one parameter may be moved, and which claims fail beyond."""
     if beside is None:
         return ""
     low, high = (

@@ -1,4 +1,4 @@
-"""An executed notebook as a page of the report: from disk, without scripts or a network."""
+"""An executed notebook as a page of the report that needs neither scripts nor a network."""
 
 from pathlib import Path
 

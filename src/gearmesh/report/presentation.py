@@ -1,4 +1,4 @@
-"""How claims and numbers are put into words, for the notebooks and for the report."""
+"""Claims and numbers as text, for the notebooks and the report."""
 
 import math
 import re
@@ -11,7 +11,7 @@ import jinja2
 from markupsafe import Markup, escape
 
 from gearmesh.reproduction.claims import DEVIATES, NOT_TESTABLE, REPRODUCED, Bound, Claim, Entry
-from gearmesh.reproduction.figures.palette import COURSES
+from gearmesh.reproduction.figures.palette import LOOKS
 
 TEMPLATES = Path(__file__).parent / "templates"
 
@@ -20,7 +20,7 @@ STATUS_LABELS = {
     DEVIATES: "≠ deviates",
     NOT_TESTABLE: "– not testable",
 }
-"""Status in words, with a sign, so that it does not hang on colour alone."""
+"""Status in words with a sign, so that it can be read without colour."""
 
 
 _VARIANT = re.compile(r"\b([a-h])-(conservative|material|lubricant|both)(?:-([\d.]+)x)?\b")
@@ -107,7 +107,7 @@ def typeset(text: str) -> Markup:
 def _symbol(match: re.Match[str]) -> str:
     letter, where, factor = match.groups()
     multiple = f"\u00a0({factor}k)" if factor else ""
-    return f'<span style="white-space: nowrap">{letter}-{COURSES[where].symbol}{multiple}</span>'
+    return f'<span style="white-space: nowrap">{letter}-{LOOKS[where].symbol}{multiple}</span>'
 
 
 @cache

@@ -1,4 +1,4 @@
-"""Figures of one run, and of two runs on each other, for ``gearmesh plot`` and ``compare``."""
+"""Figures of one run or of two runs together, for ``gearmesh plot`` and ``gearmesh compare``."""
 
 from collections.abc import Sequence
 from pathlib import Path
@@ -43,7 +43,7 @@ def draw(runs: Sequence[xr.Dataset]) -> Figure:
         name = f"{letter}{run.attrs['variant']}, $\\nu_s$ = {run.attrs['nu_s']:g}"
         _draw_plane(plane, run, colour, line)
         _draw_times(times, run, name, colour, line)
-    for axes in (plane, times):  # the regions are shaded up to the limits, which stay
+    for axes in (plane, times):  # shading the regions must not change the limits
         axes.set(xlim=axes.get_xlim(), ylim=axes.get_ylim())
     backlash = scale(runs[0]).backlash
     shade_regions(plane, backlash, along="x")
@@ -99,9 +99,9 @@ def read_run(path: Path) -> xr.Dataset:
     except OSError as error:
         raise InputError(f"{path}: cannot be read: {error.strerror or error}") from None
     except ValueError:
-        raise InputError(f"{path}: cannot be read: it is no NetCDF file") from None
+        raise InputError(f"{path}: cannot be read: not a NetCDF file") from None
     if "parameters" not in run.attrs or "strobe_y_rel" not in run:
-        raise InputError(f"{path}: no run of gearmesh; 'gearmesh simulate' writes one")
+        raise InputError(f"{path}: not a run of gearmesh; 'gearmesh simulate' writes one")
     if "y_rel" not in run or not run["y_rel"].size:
         raise InputError(f"{path}: a run without its time course; 'gearmesh simulate' writes one")
     return run.set_coords("time")
@@ -125,6 +125,6 @@ def differences(first: xr.Dataset, second: xr.Dataset) -> list[tuple[str, str, s
         difference = (other - one) / one if one else np.nan
         unit = variable.attrs.get("units", "1")
         label = str(name) if unit == "1" else f"{name} in {unit}"
-        told = "0" if one == other else f"{difference:.2e}" if np.isfinite(difference) else "–"
-        rows.append((label, f"{one:.10g}", f"{other:.10g}", told))
+        shown = "0" if one == other else f"{difference:.2e}" if np.isfinite(difference) else "–"
+        rows.append((label, f"{one:.10g}", f"{other:.10g}", shown))
     return rows

@@ -33,11 +33,15 @@ def draw_response(resonance: xr.Dataset) -> Figure:
     for letter, axes in zip(letters, panels, strict=True):
         for name in resonance["variant"].values[resonance["letter"].values == letter]:
             curve = resonance.sel(variant=name)
-            look = palette.COURSES[str(curve["symbol"].item())]
+            look = palette.LOOKS[str(curve["symbol"].item())]
             for extreme in ("y_max_rel", "y_min_rel"):
                 axes.plot(
                     *(curve["nu"], curve[extreme]),
-                    **{"ls": "none", "marker": ".", "ms": 2.4, "mew": 0, "rasterized": True},
+                    ls="none",
+                    marker=".",
+                    ms=2.4,
+                    mew=0,
+                    rasterized=True,
                     color=look.colour,
                     alpha=0.5 if curve["damping_factor"] != 1.0 else 1.0,
                     label=str(name) if extreme == "y_max_rel" else None,
@@ -70,8 +74,12 @@ def draw_bifurcation(bifurcation: xr.Dataset) -> Figure:
         nu = np.broadcast_to(curve["nu"].values[:, None], extrema.shape)
         axes.plot(
             *(nu.ravel(), extrema.ravel()),
-            **{"ls": "none", "marker": ".", "ms": 1.4, "mew": 0, "rasterized": True},
-            color=palette.COURSES[str(curve["symbol"].item())].colour,
+            ls="none",
+            marker=".",
+            ms=1.4,
+            mew=0,
+            rasterized=True,
+            color=palette.LOOKS[str(curve["symbol"].item())].colour,
         )
         axes.set_title(name)
         _finish(axes, bifurcation)

@@ -45,8 +45,8 @@ EQUATIONS = (
             r"=\mathbf{F}(a_n,b_n,\bar\varphi,H,\tau)",
         ),
         "Six coordinates: the rotations φ_3 and φ_2 and the displacements y_3, y_2, z_3 and z_2. "
-        "The elastic force in the mesh is linear in each region, so no term of C beyond the "
-        "first is there.",
+        "The elastic force in the mesh is linear in each region, so C has only its "
+        "first term.",
     ),
     Equation(
         2,
@@ -72,7 +72,7 @@ EQUATIONS = (
             r"\,\sin\,n[(\varepsilon-2)\pi]\,\cos\,n\omega_c t",
         ),
         "The sum is a rectangular wave: C_max while two pairs of teeth are in mesh, C_min "
-        "while one is. The steps of the integration end on its switches.",
+        "while one is. Steps of the integration end at its switches.",
     ),
     Equation(
         5,
@@ -81,7 +81,7 @@ EQUATIONS = (
             r"C_s=\kappa C_{\mathrm{max}}+\frac{C_{\mathrm{max}}(1-\kappa)}{2}"
             r"[1+(2\varepsilon-3)]",
         ),
-        "It sets the tuning ν_s = ω_c/Ω_s, with Ω_s² = C_s/m_red.",
+        "It defines the mesh frequency ν_s = ω_c/Ω_s, with Ω_s² = C_s/m_red.",
     ),
     Equation(
         6,

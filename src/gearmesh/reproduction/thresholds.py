@@ -1,7 +1,7 @@
 """Locate what the paper states as numbers in ν_s: jumps, ends of loops, onsets, crossings.
 
-`locate` returns all of it for a pair. The searches cover the paper's range of ν_s whatever the
-grid of the study is. Lengths are in static deflections y_st.
+`locate` returns all of them for a pair. The searches cover the paper's range of ν_s; they do not
+depend on the grid of the study. Lengths are in static deflections y_st.
 """
 
 from collections.abc import Callable, Collection, Iterable, Mapping
@@ -13,28 +13,23 @@ from gearmesh.dynamics import response_curves as curves
 from gearmesh.dynamics.refinement import Batch
 from gearmesh.dynamics.response_curves import FailedRun, Jump, ResponseCurve
 from gearmesh.model.variants import variant
+from gearmesh.reproduction.frequencies import FIG_4, FIRST, FIRST_JUMP, LAST
 from gearmesh.solvers.response import MAXIMUM, MINIMUM, Response
 from gearmesh.study.pair import Pair
 
-FIRST, LAST = 0.6, 1.2
-"""The paper's range of ν_s."""
-
 BETWEEN_JUMPS = 0.73
-"""Half-way between the jumps that the paper sees near 0.66 and near 0.8."""
+"""Half-way between the paper's jumps, near 0.66 and near 0.8."""
 
 LAST_JUMP = 1.0
-"""The searches for jumps end here."""
+"""Upper end of the searches for jumps."""
 
 LOOPS_FROM = 0.5
-"""The searches for loops begin here: those of a more damped curve may end below `FIRST`."""
-
-STROBED_AT = (0.60, 1.05, 1.20)
-"""Mesh frequencies of Fig. 4."""
+"""Lower end of the searches for loops. With more damping the loops may end below `FIRST`."""
 
 NONLINEAR = ("c", "d", "h")
-"""Letters of the variants that Figs. 2 and 3 set beside the linear one."""
+"""Letters of the variants with nonlinear damping in Figs. 2 and 3."""
 
-Found = dict[str, Callable[[], object]]
+Searches = dict[str, Callable[[], object]]
 """Observable -> the search for it."""
 
 
@@ -52,20 +47,21 @@ def locate(pair: Pair, variants: Collection[str]) -> dict[str, dict[str, object]
     pair : Pair
         The pair of the study.
     variants : collection of str
-        Names of the variants of the study, ``c-material-5x`` among them where it is in.
+        Names of the variants of the study, such as ``c-material-5x``.
 
     Returns
     -------
     dict
         Observable -> variant (or group of variants) -> value, ready for JSON. Frequencies are
-        ν_s, lengths in y_st. A threshold that does not exist is None; one whose variants are
-        missing is left out; one that depends on a run that failed is ``{"not_located": why}``.
+        ν_s, lengths are in y_st. A threshold that does not exist is None. A threshold whose
+        variants are missing is left out. A threshold that depends on a failed run is
+        ``{"not_located": reason}``.
     """
     return locate_on({name: curve_of(pair, name) for name in sorted(variants)}, pair)
 
 
 def locate_on(known: Mapping[str, ResponseCurve], pair: Pair) -> dict[str, dict[str, object]]:
-    """Locate every threshold that some curves, by the names of their variants, allow."""
+    """Locate every threshold that the given curves allow; they are keyed by variant."""
     found: dict[str, dict[str, object]] = {}
 
     def note(observable: str, name: str, search: Callable[[], object]) -> None:
@@ -75,13 +71,13 @@ def locate_on(known: Mapping[str, ResponseCurve], pair: Pair) -> dict[str, dict[
             value = {"not_located": str(error)}
         found.setdefault(observable, {})[name] = value
 
-    def note_all(name: str, searches: Found) -> None:
+    def note_all(name: str, searches: Searches) -> None:
         for observable, search in searches.items():
             note(observable, name, search)
 
     for letter in ("b", *NONLINEAR):
         if (name := f"{letter}-lubricant") in known:
-            note_all(name, _of_lubricant(known[name], pair))
+            note_all(name, _lubricant_searches(known[name], pair))
     for name in (f"{letter}-{symbol}" for letter in NONLINEAR for symbol in ("material", "both")):
         if name in known:
             note("largest_step", name, _of(curves.largest_step, known[name], FIRST, LAST))
@@ -95,11 +91,11 @@ def locate_on(known: Mapping[str, ResponseCurve], pair: Pair) -> dict[str, dict[
             note("material_or_both", letter, search)
     group = [known.get(f"{letter}-lubricant") for letter in NONLINEAR]
     if None not in group:
-        note("course_spread", "below", _of(curves.typical_spread, group, 0.66, 0.80))
+        note("course_spread", "below", _of(curves.typical_spread, group, FIRST_JUMP, 0.80))
         note("course_spread", "above", _of(curves.typical_spread, group, 0.80, 1.10))
     for name in ("c-material", "c-material-5x"):
         if name in known:
-            note_all(name, _of_loops(known[name], pair))
+            note_all(name, _loop_searches(known[name], pair))
     both = [known.get(name) for name in ("c-material-5x", "c-material")]
     if None not in both:
         note("exceedance", "c-material-5x", _of(curves.exceedance, *both, FIRST, 0.8))
@@ -111,7 +107,7 @@ def _of(function: Callable[..., object], *arguments: object) -> Callable[[], obj
 
 
 def _plain(value: object) -> object:
-    """Write a value as JSON can hold it; what is not a number becomes None."""
+    """Return a value as JSON can hold it; not-a-number becomes None."""
     if isinstance(value, Jump):
         return asdict(value)
     if isinstance(value, dict):
@@ -122,7 +118,7 @@ def _plain(value: object) -> object:
 
 
 def strobe_spread(pair: Pair) -> curves.Measure:
-    """Return the measure of how far the kept stroboscopic points lie apart: 0 if periodic."""
+    """Return a measure of the spread of the kept stroboscopic points; a periodic motion has 0."""
     kept = pair.kept_revolutions * pair.teeth + 1
 
     def spread(response: Response) -> float:
@@ -132,10 +128,10 @@ def strobe_spread(pair: Pair) -> curves.Measure:
     return spread
 
 
-def _of_lubricant(curve: ResponseCurve, pair: Pair) -> Found:
-    """Return the searches on a curve with damping in contact loss only (Figs. 2 to 4)."""
+def _lubricant_searches(curve: ResponseCurve, pair: Pair) -> Searches:
+    """Return the searches on a curve with lubricant damping (Figs. 2 to 4)."""
     maxima, minima = (curve.of(curves.extremum_spread(kind)) for kind in (MAXIMUM, MINIMUM))
-    strobes = curve.of(strobe_spread(pair))
+    stroboscopic = curve.of(strobe_spread(pair))
 
     def rises() -> list[Jump]:
         return curves.jumps(curve, FIRST, LAST_JUMP)
@@ -159,78 +155,74 @@ def _of_lubricant(curve: ResponseCurve, pair: Pair) -> Found:
         "lowest": lambda: _least(curve.of(curves.y_min)(curve.scan(FIRST, LAST))),
         "onset_maxima": split,
         "onset_minima": _of(curves.onset, curve, minima, LAST_JUMP, LAST),
-        "onset_strobes": _of(curves.onset, curve, strobes, LAST_JUMP, LAST),
+        "onset_strobes": _of(curves.onset, curve, stroboscopic, LAST_JUMP, LAST),
         "largest_rise": lambda: curves.largest_rise(curve, summit()[0], split() or LAST),
         "loss_gained": lambda: {
-            name: place and loss_gained(curve, place)
-            for name, place in (("first", first()), ("second", second()))
+            name: None if nu is None else loss_gained(curve, nu)
+            for name, nu in (("first", first()), ("second", second()))
         },
         "maxima_spread": lambda: _spread_below_and_above(curve, maxima),
-        "strobe_spread": lambda: dict(
-            zip(
-                (f"{nu:.2f}" for nu in STROBED_AT),
-                strobes(np.array(STROBED_AT)).tolist(),
-                strict=True,
-            )
-        ),
+        "strobe_spread": lambda: {
+            f"{nu:.2f}": spread
+            for nu, spread in zip(FIG_4, stroboscopic(np.array(FIG_4)).tolist(), strict=True)
+        },
     }
 
 
 def _spread_below_and_above(curve: ResponseCurve, spread: Batch) -> dict[str, float]:
-    """Return the typical spread below 0.8, away from the jump near 0.66, and above 1.1."""
-    orderly = np.array([nu for nu in curve.scan(FIRST, 0.80) if abs(nu - 0.66) > 0.02])
+    """Return the median spread below 0.8, without the jump near 0.66, and above 1.1."""
+    below = np.array([nu for nu in curve.scan(FIRST, 0.80) if abs(nu - FIRST_JUMP) > 0.02])
     return {
-        "below": float(np.median(spread(orderly))),
+        "below": float(np.median(spread(below))),
         "above": float(np.median(spread(curve.scan(1.1, LAST)))),
     }
 
 
 def loss_gained(curve: ResponseCurve, jump: float) -> float:
-    """Return by how much the share of contact loss is greater above a jump than below it."""
+    """Return how much the share of contact loss increases at a jump."""
     loss = curve.of(curves.contact_loss)
     below = curve.scan(jump - 8 * curves.SCAN, jump - curves.SCAN)
     above = curve.scan(jump + curves.SCAN, jump + 8 * curves.SCAN)
     return float(np.median(loss(above)) - np.median(loss(below)))
 
 
-def _of_loops(curve: ResponseCurve, pair: Pair) -> Found:
+def _loop_searches(curve: ResponseCurve, pair: Pair) -> Searches:
     """Return the searches for the loops of a curve (Figs. 3 and 5 to 7)."""
     turning = curve.of(curves.turning_points)
 
     def end() -> float | None:
         return curves.loop_end(curve, LOOPS_FROM, LAST)
 
-    def before() -> float | None:
-        place = end()
-        return place and _least(turning(curve.scan(FIRST, place - curve.width)))
+    def at_end(measure: Callable[[float], float]) -> Callable[[], float | None]:
+        def search() -> float | None:
+            nu = end()
+            return None if nu is None else measure(nu)
 
-    def beyond() -> float | None:
-        place = end()
-        return place and -_least(-turning(curve.scan(place + curve.width, LAST)))
-
-    def closing() -> float | None:
-        place = end()
-        return place and loop_place(curve, place, pair.initial_phase)
+        return search
 
     return {
         "loop_end": end,
-        "loop_place": closing,
-        "turning_points_before": before,
-        "turning_points_beyond": beyond,
+        "loop_place": at_end(lambda nu: loop_place(curve, nu, pair.initial_phase)),
+        "turning_points_before": at_end(
+            lambda nu: _least(turning(curve.scan(FIRST, nu - curve.width)))
+        ),
+        "turning_points_beyond": at_end(
+            lambda nu: -_least(-turning(curve.scan(nu + curve.width, LAST)))
+        ),
     }
 
 
 def loop_place(curve: ResponseCurve, end: float, initial_phase: float) -> float:
-    """Return the phase of the mesh period at which the last loop, just below its end, closes."""
+    """Return the phase of the mesh period at which the loop closes, just below its end in ν_s."""
 
-    def place(response: Response) -> float:
+    def phase(response: Response) -> float:
         closest = int(np.argmin(np.abs(np.diff(response.extremum_y))))
         time = response.extremum_time[closest : closest + 2].mean()
         return float((time / response.period + initial_phase) % 1.0)
 
-    return float(curve.of(place)(np.array([end - curve.width]))[0])
+    return float(curve.of(phase)(np.array([end - curve.width]))[0])
 
 
 def _least(values: Iterable[float]) -> float:
-    """Return the least value, infinity where there is none."""
+    """Return the least value; infinity if there is none."""
     return float(np.min(np.asarray(values), initial=np.inf))

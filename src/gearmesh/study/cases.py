@@ -48,7 +48,7 @@ class StrongDamping(Section):
 
 
 class Plan(Section):
-    """Which cases are computed, and what is made of them."""
+    """The cases of a study, and the files that are written."""
 
     title: str = Field(description="one line", min_length=1, max_length=200)
     claims: str | None = Field(
@@ -57,7 +57,8 @@ class Plan(Section):
     nu: Frequencies = Field(description="the mesh frequencies ν_s of all variants")
     variants: tuple[VariantName, ...] = Field(description="names of Tab. 1, or all")
     direction: Literal["up", "down"] | None = Field(
-        None, description="whether each run goes on from the run at the neighbouring frequency"
+        None,
+        description="whether each run starts from the end of the run at the next frequency",
     )
     strong_damping: StrongDamping | None = Field(None, description="a more damped variant")
     time_courses: dict[str, tuple[Nu, ...]] = Field(
@@ -115,11 +116,24 @@ class Plan(Section):
 
 @dataclass(frozen=True, slots=True)
 class Case:
-    """One run of a study."""
+    """One run of a study.
+
+    Attributes
+    ----------
+    variant : Variant
+        Which damping terms act where.
+    nu : float
+        Mesh frequency ν_s.
+    time_course : bool
+        Whether its file holds the time course.
+    direction : {"up", "down"}, optional
+        In a sweep, the direction in which runs follow one another.
+    """
 
     variant: Variant
     nu: float
     time_course: bool = False
+    direction: str | None = None
 
 
 @dataclass(frozen=True)
@@ -179,13 +193,15 @@ class Study:
     def cases(self) -> tuple[Case, ...]:
         """All cases, variant by variant, each with ascending frequencies.
 
-        A frequency that has a time course is a case of its variant also where it lies off the
-        grid.
+        A frequency with a time course is a case of its variant even if it is not on the grid.
         """
         cases = []
         for chosen, nus in self.plan.frequencies():
             courses = set(self.time_courses.get(chosen.name, ()))
-            cases += [Case(chosen, nu, nu in courses) for nu in sorted({*nus, *courses})]
+            cases += [
+                Case(chosen, nu, nu in courses, self.plan.direction)
+                for nu in sorted({*nus, *courses})
+            ]
         return tuple(cases)
 
     def has_file(self, case: Case) -> bool:

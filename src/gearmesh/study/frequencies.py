@@ -10,7 +10,7 @@ from gearmesh.study import units
 from gearmesh.study.schema import Section, quantity
 
 NU_DECIMALS = 10
-"""Frequencies are decimal numbers of at most so many decimals."""
+"""Greatest number of decimals of a frequency."""
 
 NU_MIN, NU_MAX = 0.01, 10.0
 MAX_CASES = 200_000

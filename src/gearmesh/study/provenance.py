@@ -19,7 +19,7 @@ _KEYS = ("value", "kind", "reason")
 
 @dataclass(frozen=True, slots=True)
 class Statement:
-    """A value as it was stated, with its kind and its reason.
+    """A value as stated, with its kind and its reason.
 
     Attributes
     ----------

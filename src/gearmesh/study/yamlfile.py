@@ -1,4 +1,4 @@
-"""YAML read strictly: plain data only, each key once, and one line for each slip.
+"""YAML read strictly: plain data only, each key once, and one line for each mistake.
 
 Scalars follow YAML 1.2 (``1e-10`` is a number; ``no``, ``1:30`` and dates are texts). Aliases and
 tags are refused, so that a file is as large as it looks and cannot run code.

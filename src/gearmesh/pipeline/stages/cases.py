@@ -7,12 +7,14 @@ it is written again with what it holds. All others are integrated.
 
 import time
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
 from pathlib import Path
 
 from gearmesh.data import batches, casefile, manifest
 from gearmesh.data.casefile import Record
 from gearmesh.data.paths import Places
 from gearmesh.errors import InputError
+from gearmesh.model.variants import Variant
 from gearmesh.pipeline.messages import say
 from gearmesh.study.cases import Case, Study
 
@@ -29,7 +31,9 @@ def cases(study: Study, places: Places, letter: str) -> list[Path]:
     files = {case: places.case(case.variant.name, case.nu) for case in wanted}
     records = _kept(study, places, files, places.manifest(f"cases-{letter}"))
     kept = len(records)
-    failed = 0
+    if study.plan.direction:
+        records = _sweep(study, places, wanted)
+    failed = sum(int(record["status"]) != 0 for record in records.values())
     printed = time.monotonic()
     for chunk in _chunks([case for case in wanted if case not in records]):
         computed = _integrate(study, places, chunk)
@@ -50,6 +54,8 @@ def cases(study: Study, places: Places, letter: str) -> list[Path]:
 def case(study: Study, places: Places, variant: str, nu: str) -> list[Path]:
     """Compute one case, whose file is asked for by its name."""
     file = places.case(variant, nu)
+    if study.plan.direction:
+        raise InputError(f"{file}: a run of a sweep is not computed alone; ask for 'data'")
     for found in study.cases:
         if places.case(found.variant.name, found.nu) == file and study.has_file(found):
             _integrate(study, places, [found])
@@ -60,8 +66,8 @@ def case(study: Study, places: Places, variant: str, nu: str) -> list[Path]:
 def _kept(study: Study, places: Places, files: dict[Case, Path], path: Path) -> dict[Case, Record]:
     """Return what the case files hold that need no integration."""
     before = manifest.read(path)
-    if before is None:
-        return {}
+    if before is None or study.plan.direction:
+        return {}  # a run of a sweep depends on all runs before it
     names = {case: file.relative_to(places.folder).as_posix() for case, file in files.items()}
     known = [name for name in names.values() if name in before.written]
     hashes = manifest.Hashes(places.folder).of(known)
@@ -82,6 +88,38 @@ def _reuse(study: Study, case: Case, path: Path) -> Record | None:
     if attributes != wanted:
         casefile.write_case(path, wanted, record)
     return record
+
+
+def _sweep(study: Study, places: Places, wanted: Sequence[Case]) -> dict[Case, Record]:
+    """Integrate all cases, each from the end of its neighbour's run, and write their files."""
+    from gearmesh.dynamics.sweeps import run_chains
+    from gearmesh.solvers.simulation import simulate
+
+    pair = study.pair
+    down = study.plan.direction == "down"
+    by_variant: dict[Variant, list[Case]] = {}
+    for case in sorted(wanted, key=lambda case: case.nu, reverse=down):
+        by_variant.setdefault(case.variant, []).append(case)
+    chains = [
+        [pair.problem(case.variant, case.nu) for case in chain] for chain in by_variant.values()
+    ]
+    records = {}
+    for chain, responses in zip(
+        by_variant.values(), run_chains(chains, pair.tolerance), strict=True
+    ):
+        start = None
+        for case, response in zip(chain, responses, strict=True):
+            if case.time_course:  # again, with samples
+                problem = pair.problem(case.variant, case.nu)
+                if start is not None:
+                    problem = replace(problem, initial_state=start)
+                [response] = simulate([problem], pair.tolerance, pair.samples_per_period)
+            records[case] = casefile.record(response, pair)
+            start = response.final_state
+            if study.has_file(case):
+                path = places.case(case.variant.name, case.nu)
+                casefile.write_case(path, casefile.attributes(pair, case), records[case])
+    return records
 
 
 def _integrate(study: Study, places: Places, chunk: Sequence[Case]) -> list[Record]:

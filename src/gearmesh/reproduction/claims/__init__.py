@@ -1,4 +1,4 @@
-"""The paper's claims: load them, check them, put the results together.
+"""The paper's claims: load them, check them, collect the results.
 
 A notebook or a rule needs these calls::
 
@@ -7,9 +7,9 @@ A notebook or a rule needs these calls::
     entries = checking.check_figure("fig2", evidence, ledger, places.check("fig2"))
     print(verdict(collect(ledger, all_check_files, places.ledger)))
 
-`gearmesh.reproduction.claims.ledger` holds claims, entries and the verdict; `printed` and `fig2` to
-`fig7` hold what is measured for each claim, and `checking` puts them together. The package
-itself imports none of these: what only reads the ledger need not load the solver.
+`ledger` holds claims, entries and the verdict. `printed` and `fig2` to `fig7` measure each claim,
+and `checking` compares the measurements with the ledger. The package itself does not import these
+checks, so a program that only reads the ledger does not load the solver.
 """
 
 from gearmesh.reproduction.claims.evidence import Evidence, NotInStudy

@@ -19,7 +19,7 @@ from gearmesh.reproduction.claims.ledger import (
 )
 
 Measure = Callable[[Evidence], tuple[Any, str]]
-"""Measures what a claim speaks of; returns the value (see `ledger.holds`) and a line on it."""
+"""Measures the quantity of a claim; returns the value (see `ledger.holds`) and a line about it."""
 
 MEASURES: dict[str, Measure] = {
     **printed.MEASURES,
@@ -34,41 +34,47 @@ MEASURES: dict[str, Measure] = {
 
 
 def check(claim: Claim, evidence: Evidence) -> Entry:
-    """Measure one claim and give it its status; a claim that does not hold raises nothing."""
+    """Measure one claim and return it with its status.
+
+    Raises
+    ------
+    InputError
+        If no check has the id of the claim. A claim that does not hold raises nothing.
+    """
     if claim.id not in MEASURES:
-        raise InputError(f"claims: {claim.id}: no such check, known are {', '.join(MEASURES)}")
+        raise InputError(f"claims: {claim.id}: no such check; known are {', '.join(MEASURES)}")
+    stated = claim.model_dump()
     try:
         measured, detail = MEASURES[claim.id](evidence)
     except NotInStudy as error:
-        found = {"status": NOT_TESTABLE, "detail": f"not in this study: {error}", "judged": False}
+        detail = f"not in this study: {error}"
+        return Entry(**stated, status=NOT_TESTABLE, detail=detail, judged=False)
     except NotLocated as error:
-        found = {"status": NOT_TESTABLE, "detail": f"not located: {error}"}
-    else:
-        status = REPRODUCED if holds(claim, measured) else DEVIATES
-        found = {"measured": measured, "status": status, "detail": detail}
-    return Entry(**claim.model_dump(), **found)
+        return Entry(**stated, status=NOT_TESTABLE, detail=f"not located: {error}")
+    status = REPRODUCED if holds(claim, measured) else DEVIATES
+    return Entry(**stated, measured=measured, status=status, detail=detail)
 
 
 def check_figure(
     figure: Figure, evidence: Evidence, ledger: Iterable[Claim], output: Path | None = None
 ) -> list[Entry]:
-    """Check every claim that the ledger gives to a figure.
+    """Check every claim of a figure.
 
     Parameters
     ----------
     figure : str
         'printed' or 'fig2' to 'fig7'.
     evidence : Evidence
-        What the checks look at.
+        What the checks read.
     ledger : iterable of Claim
         See `load_ledger`.
     output : Path, optional
-        Where the entries are written, `results/checks/fig2.json`.
+        File to which the entries are written.
 
     Returns
     -------
     list of Entry
-        In the order of the ledger. A claim that deviates raises nothing.
+        In the order of the ledger.
     """
     entries = [check(claim, evidence) for claim in ledger if claim.figure == figure]
     if output is not None:

@@ -1,4 +1,4 @@
-"""What a check may look at."""
+"""What the checks read: parameters, located thresholds, time courses."""
 
 import math
 from collections.abc import Iterable, Mapping
@@ -12,7 +12,7 @@ if TYPE_CHECKING:
 
 
 class NotInStudy(LookupError):
-    """The study does not have what a claim speaks of: a variant, a frequency."""
+    """A variant or a frequency that a claim needs is not in the study."""
 
 
 class NotLocated(LookupError):
@@ -21,14 +21,14 @@ class NotLocated(LookupError):
 
 @dataclass(frozen=True, kw_only=True)
 class Evidence:
-    """All that checks look at; what the claims of a figure do not need may be left out.
+    """All that the checks read. The parts that a figure does not need may be left out.
 
     Attributes
     ----------
     pair : Pair
         The parameters of the study.
     thresholds : mapping
-        `results/datasets/thresholds.json`: what `gearmesh.reproduction.thresholds.locate` returns.
+        What `gearmesh.reproduction.thresholds.locate` returns.
     time_courses : mapping
         (variant, nu) -> case file with its time course, opened with xarray (Figs. 4 and 7).
     """
@@ -38,14 +38,14 @@ class Evidence:
     time_courses: "Mapping[tuple[str, float], xr.Dataset]" = field(default_factory=dict)
 
     def located(self, observable: str, names: Iterable[str]) -> dict[str, Any]:
-        """Return an observable for each of `names`; what does not exist is not-a-number.
+        """Return an observable for each of `names`; not-a-number where it does not exist.
 
         Raises
         ------
         NotInStudy
-            If one of them is missing.
+            If the observable is missing for one of the names.
         NotLocated
-            If a run that one of them depends on failed.
+            If the observable depends on a failed run.
         """
         known = self.thresholds.get(observable, {})
         names = list(names)
@@ -58,7 +58,7 @@ class Evidence:
         return {name: _as_numbers(known[name]) for name in names}
 
     def time_course(self, variant: str, nu: float) -> "xr.Dataset":
-        """Return a case with its time course; raise NotInStudy if it is missing."""
+        """Return a case with its time course; raises NotInStudy if it is missing."""
         for (name, at), case in self.time_courses.items():
             if name == variant and abs(at - nu) < 1e-9 and "y_rel" in case:
                 return case

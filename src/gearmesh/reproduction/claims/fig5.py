@@ -1,25 +1,25 @@
-"""Fig. 5: phase portrait of c-□ over nu_s."""
+"""Fig. 5: phase portrait of c-□ over ν_s."""
 
 from gearmesh.model.stiffness import switch_phases
 from gearmesh.reproduction.claims.evidence import Evidence
 
 
 def loops_vanish(evidence: Evidence) -> tuple[dict[str, float], str]:
-    """F5.1: turning points in a period below and above the end of the loops."""
+    """F5.1: turning points in a mesh period below and above the end of the loops."""
     name = "c-material"
     measured = {
         side: evidence.located(f"turning_points_{side}", [name])[name]
         for side in ("before", "beyond")
     }
     end = evidence.located("loop_end", [name])[name]
-    return measured, f"turning points a period up to and beyond ν_s = {end:.4f}"
+    return measured, f"turning points a period below and above ν_s = {end:.4f}"
 
 
 def distance_to_switch(evidence: Evidence, name: str) -> float:
-    """Return how far from a switch of C(t) the last loop closes, in mesh periods."""
-    place = evidence.located("loop_place", [name])[name]
+    """Return the distance in mesh periods from the closing of the last loop to a switch of C(t)."""
+    closing = evidence.located("loop_place", [name])[name]
     phases = switch_phases(evidence.pair.contact_ratio)
-    return min(abs((place - phase + 0.5) % 1.0 - 0.5) for phase in phases)
+    return float(min(abs((closing - phase + 0.5) % 1.0 - 0.5) for phase in phases))
 
 
 def loops_melt(evidence: Evidence) -> tuple[float, str]:

@@ -1,4 +1,4 @@
-"""Numbers that the paper prints or that follow from them, checked by computing them again."""
+"""Numbers that the paper prints, and numbers that follow from them, computed again."""
 
 import math
 from collections.abc import Callable
@@ -10,10 +10,10 @@ from scipy.optimize import brentq
 from gearmesh.model import stiffness
 from gearmesh.model.variants import variant
 from gearmesh.reproduction.claims.evidence import Evidence
+from gearmesh.reproduction.frequencies import FIRST_JUMP
 from gearmesh.solvers.simulation import simulate
 from gearmesh.study.pair import Pair
 
-NU_OF_THE_JUMP = 0.66
 HARMONICS = 50
 
 
@@ -28,7 +28,7 @@ def least_stiffness(evidence: Evidence) -> tuple[float, str]:
 
 
 def damping_ratios(evidence: Evidence) -> tuple[dict[str, float], str]:
-    """P3: proportional damping, and the damping multiplied by five."""
+    """P3: proportional damping D with k and with 5k."""
     pair = evidence.pair
     factor = variant("c-material-5x").factor
     ratios = {
@@ -40,18 +40,18 @@ def damping_ratios(evidence: Evidence) -> tuple[dict[str, float], str]:
     return ratios, "D = k/(2 √(C_s m_red)) with m_red in N s²/mm; k in N s/mm"
 
 
-def tunings(evidence: Evidence) -> tuple[dict[str, float], str]:
-    """P4: tunings to the two levels of the stiffness at the first jump."""
+def frequencies_of_the_levels(evidence: Evidence) -> tuple[dict[str, float], str]:
+    """P4: mesh frequency relative to C_min and to C_max at the first jump."""
     pair = evidence.pair
     values = {
-        "nu_min": NU_OF_THE_JUMP * pair.nu_min_ratio,
-        "nu_max": NU_OF_THE_JUMP * pair.nu_max_ratio,
+        "nu_min": FIRST_JUMP * pair.nu_min_ratio,
+        "nu_max": FIRST_JUMP * pair.nu_max_ratio,
     }
     return values, "ν_s √(C_s/C_x) at ν_s = 0.66"
 
 
 def resonance_of_least_stiffness(evidence: Evidence) -> tuple[float, str]:
-    """P5: where the tuning to C_min is 1."""
+    """P5: ν_s at which ν_min = 1."""
     return 1.0 / evidence.pair.nu_min_ratio, "ν_s where ν_min = 1"
 
 
@@ -65,11 +65,11 @@ def standard_contact_ratio(evidence: Evidence) -> tuple[float, str]:
 
 
 def rectangular_wave(evidence: Evidence) -> tuple[dict[str, float], str]:
-    """P7: the coefficients of eq. (4) against those of a rectangular wave."""
+    """P7: the coefficients of eq. (4) compared with those of a rectangular wave."""
     pair = evidence.pair
     ratio, c_max = pair.contact_ratio, pair.mesh_stiffness_max
     printed = stiffness.fourier_amplitudes(ratio, c_max, pair.stiffness_min, HARMONICS)
-    # Coefficients of the wave by their integral over the half period, where it falls once.
+    # The coefficients of the wave are integrals over half a period, in which it falls once.
     n = np.arange(1, HARMONICS + 1)
     fall = stiffness.switch_phases(ratio)[0]
     wave = 2 * (c_max - pair.stiffness_min) * np.sin(2 * np.pi * n * fall) / (np.pi * n)
@@ -91,14 +91,14 @@ def _trace(nu: float, damping_ratio: float, pair: Pair) -> float:
 
 
 def _root(function: Callable[[float], float], low: float, high: float) -> float:
-    """Return where a function changes its sign, not-a-number where it does not."""
+    """Return where a function changes its sign; not-a-number if it does not."""
     if not function(low) * function(high) < 0:
         return math.nan
-    return brentq(function, low, high, xtol=1e-8)
+    return float(brentq(function, low, high, xtol=1e-8))
 
 
 def parametric_tongue(evidence: Evidence) -> tuple[dict[str, float], str]:
-    """P8: where the oscillator that never loses contact is unstable, by Floquet's theory."""
+    """P8: interval of ν_s where the oscillator without contact loss is unstable (Floquet)."""
     pair = evidence.pair
 
     def excess(nu: float) -> float:
@@ -108,21 +108,22 @@ def parametric_tongue(evidence: Evidence) -> tuple[dict[str, float], str]:
     edges = _root(excess, 0.6, middle), _root(excess, middle, 0.72)
 
     def growth(ratio: float) -> float:
-        """Least logarithmic growth over a period; the trace leaves out the factor exp(-ζ T)."""
+        """Return the greatest logarithmic growth over a period, for a damping ratio."""
         nus = np.linspace(*edges, 201)
         traces = np.maximum([abs(_trace(nu, ratio, pair)) / 2 for nu in nus], 1.0)
+        # The trace does not contain the factor exp(-ζ T) of the decay.
         return float(np.max(np.arccosh(traces) - ratio * 2 * np.pi / nus))
 
     values = {"from": edges[0], "to": edges[1], "damping ratio": _root(growth, 1e-4, 0.05)}
-    return values, "third parametric resonance; the damping ratio above which it vanishes"
+    return values, "third parametric resonance, and the damping ratio above which it vanishes"
 
 
 def constant_coefficients(evidence: Evidence) -> tuple[dict[str, float], str]:
-    """P9: motion that is left where the stiffness does not change, without friction."""
+    """P9: amplitude of the motion with constant stiffness, without friction."""
     swings = {}
     for name, ratio in (("ε = 1", 1.0), ("ε = 2", 2.0)):
         pair = evidence.pair.replace(contact_ratio=ratio, friction_coefficient=0.0)
-        problem = pair.problem(variant("c-material"), NU_OF_THE_JUMP)
+        problem = pair.problem(variant("c-material"), FIRST_JUMP)
         response = simulate([problem], pair.tolerance)[0]
         swings[name] = response.y_max - response.y_min
     return swings, "y_max - y_min in y_st of c-material at ν_s = 0.66"
@@ -132,7 +133,7 @@ MEASURES = {
     "P1": mean_stiffness,
     "P2": least_stiffness,
     "P3": damping_ratios,
-    "P4": tunings,
+    "P4": frequencies_of_the_levels,
     "P5": resonance_of_least_stiffness,
     "P6": standard_contact_ratio,
     "P7": rectangular_wave,

@@ -1,4 +1,4 @@
-"""What all figures share: the style, the regions, the axis in micrometres, the saved bytes."""
+"""Common parts of all figures: style, regions, axis in micrometres, saving."""
 
 import functools
 from collections.abc import Callable
@@ -20,15 +20,15 @@ WIDTH = 7.2
 """Width of a full page figure in inches."""
 
 NOT_IN_STUDY = "not in this study"
-"""What a panel says where a small study lacks what it would show."""
+"""Text of a panel whose cases are missing in the study."""
 
 V = "$y$′"
 A = "$y$″"
-"""y' and y'', with primes that stand closer than mathtext's."""
+"""y' and y''. Mathtext sets primes too far from the letter."""
 
 
 def styled(draw: Callable[..., Figure]) -> Callable[..., Figure]:
-    """Make `draw` work under the figures' style file, whatever the caller's settings."""
+    """Make `draw` use the style file of the figures instead of the caller's settings."""
 
     @functools.wraps(draw)
     def under_style(*args: Any, **kwargs: Any) -> Figure:
@@ -57,28 +57,28 @@ def save(figure: Figure, path: Path | str) -> tuple[Path, Path]:
     with style.context(["default", STYLE]):
         with replacing(png) as temporary:
             figure.savefig(temporary, format="png", metadata={"Software": None})
-        figure.set_layout_engine("none")  # the layout is there; finding it again takes as long
+        figure.set_layout_engine("none")  # keep the layout of the PNG
         with replacing(svg) as temporary:
             figure.savefig(temporary, format="svg", metadata={"Date": None, "Creator": None})
     return png, svg
 
 
 def note(axes: Axes, text: str) -> None:
-    """Say in an empty panel why it is empty."""
+    """Write in an empty panel why it is empty."""
     axes.text(
         0.5, 0.5, text, ha="center", va="center", color=palette.GREY, transform=axes.transAxes
     )
 
 
 def empty() -> Figure:
-    """Return a figure that says that the study lacks what it would show."""
+    """Return a figure with the text `NOT_IN_STUDY`."""
     figure = Figure(figsize=(WIDTH, 1.2))
     figure.text(0.5, 0.5, NOT_IN_STUDY, ha="center", va="center", color=palette.GREY)
     return figure
 
 
 def shade_regions(axes: Axes, backlash: float, along: str = "y") -> None:
-    """Colour contact loss yellow and inverse mesh red behind what `axes` shows.
+    """Colour contact loss yellow and inverse mesh red in the background of `axes`.
 
     Parameters
     ----------
@@ -116,26 +116,26 @@ def region_handles(inverse: bool = True) -> list[Patch]:
     ]
 
 
-def course_handle(name: str) -> Line2D:
-    """Return the legend entry of the course `name` of Tab. 1."""
-    course = palette.COURSES[name]
+def curve_handle(name: str) -> Line2D:
+    """Return the legend entry of the curves with damping in `name`, such as ``lubricant``."""
+    look = palette.LOOKS[name]
     return Line2D(
         [],
         [],
         ls="none",
-        label=course.meaning,
-        **marker_look(course, size=max(course.size, 3.6)),
+        label=look.meaning,
+        **marker_look(look, size=max(look.size, 3.6)),
     )
 
 
-def marker_look(course: palette.Course, size: float | None = None) -> dict[str, Any]:
-    """Return the marker settings of `course` for `Axes.plot`."""
+def marker_look(look: palette.Look, size: float | None = None) -> dict[str, Any]:
+    """Return the marker settings of `look` for `Axes.plot`."""
     return {
-        "marker": course.marker,
-        "ms": size or course.size,
-        "mew": 0.7 if course.open else 0.0,
-        "mec": course.colour,
-        "mfc": "none" if course.open else course.colour,
+        "marker": look.marker,
+        "ms": size or look.size,
+        "mew": 0.7 if look.open else 0.0,
+        "mec": look.colour,
+        "mfc": "none" if look.open else look.colour,
     }
 
 

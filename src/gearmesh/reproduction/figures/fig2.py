@@ -1,4 +1,4 @@
-"""Fig. 2: extremes of the relative motion over the fifth revolution against the tuning."""
+"""Fig. 2: response curves, the extremes of y in the fifth revolution against ν_s."""
 
 import numpy as np
 import xarray as xr
@@ -9,7 +9,7 @@ from gearmesh.reproduction.figures import palette
 from gearmesh.reproduction.figures.canvas import (
     NOT_IN_STUDY,
     WIDTH,
-    course_handle,
+    curve_handle,
     marker_look,
     micrometre_axis,
     note,
@@ -28,12 +28,12 @@ PANELS = (
 DAMPED = ("material", "both", "lubricant")
 
 LINEAR_TO = 4.0
-"""The ordinate of panels with the conservative course is linear up to here (in y_st) and
-logarithmic beyond: that course reaches five times farther than the others."""
+"""Panels with the conservative curve have an ordinate that is linear up to here (in y_st) and
+logarithmic beyond, because that curve extends five times farther than the others."""
 
 SYMBOLS = {"material": 20, "both": 20, "conservative": 120}
-"""Symbols along a course, where not all frequencies get one; dots stand at all of them. No line
-joins the points, so that a jump stays a gap."""
+"""Number of symbols along a curve. All frequencies have a dot. No line joins the points, so a jump
+is visible as a gap."""
 
 
 @styled
@@ -61,7 +61,7 @@ def draw(resonance: xr.Dataset) -> Figure:
             note(axes, NOT_IN_STUDY)
             continue
         for name in names:
-            _plot_course(axes, resonance.sel(variant=name), name.partition("-")[2])
+            _plot_curve(axes, resonance.sel(variant=name), name.partition("-")[2])
         _set_ordinate(axes, resonance.sel(variant=names), bool(undamped))
         shade_regions(axes, scales.backlash)
         micrometre_axis(axes, scales.static_deflection, label=axes in grid[:, 1])
@@ -70,20 +70,20 @@ def draw(resonance: xr.Dataset) -> Figure:
         axes.set_ylabel("$y_{\\max},\\ y_{\\min}$  in static deflections $y_{st}$")
     for axes in grid[1]:
         axes.set_xlim(nu.min(), nu.max())
-        axes.set_xlabel("tuning $\\nu_s=\\omega_c/\\Omega_s$")
-    courses = [course_handle(name) for name in ("conservative", *DAMPED)]
-    figure.legend(handles=courses, loc="outside upper center", ncols=4)
+        axes.set_xlabel("mesh frequency $\\nu_s=\\omega_c/\\Omega_s$")
+    curves = [curve_handle(name) for name in ("conservative", *DAMPED)]
+    figure.legend(handles=curves, loc="outside upper center", ncols=4)
     figure.legend(handles=region_handles(), loc="outside lower center", ncols=3)
     return figure
 
 
-def _plot_course(axes: Axes, course: xr.Dataset, kind: str) -> None:
-    look = palette.COURSES[kind]
-    nu = course["nu"].values
+def _plot_curve(axes: Axes, curve: xr.Dataset, kind: str) -> None:
+    look = palette.LOOKS[kind]
+    nu = curve["nu"].values
     step = max(1, nu.size // SYMBOLS.get(kind, nu.size))
-    first = step // 2 if kind == "both" else 0  # between the symbols of the course it lies on
+    first = step // 2 if kind == "both" else 0  # between the symbols of the material curve
     for name in ("y_max_rel", "y_min_rel"):
-        y = course[name].values
+        y = curve[name].values
         if step > 1:
             axes.plot(nu, y, ls="none", marker=".", ms=1.6, mew=0, color=look.colour, zorder=2)
         axes.plot(
@@ -96,8 +96,8 @@ def _plot_course(axes: Axes, course: xr.Dataset, kind: str) -> None:
         )
 
 
-def _set_ordinate(axes: Axes, courses: xr.Dataset, wide: bool) -> None:
-    low, high = float(courses["y_min_rel"].min()), float(courses["y_max_rel"].max())
+def _set_ordinate(axes: Axes, curves: xr.Dataset, wide: bool) -> None:
+    low, high = float(curves["y_min_rel"].min()), float(curves["y_max_rel"].max())
     if wide:
         axes.set_yscale("symlog", linthresh=LINEAR_TO, linscale=1.6)
         reach = 1.25 * max(-low, high, 1.25 * LINEAR_TO)

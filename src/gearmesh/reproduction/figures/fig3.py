@@ -1,4 +1,4 @@
-"""Fig. 3: all extrema of the fifth revolution against the tuning, and its Detail X."""
+"""Fig. 3: bifurcation diagrams, all extrema of the fifth revolution against ν_s; Detail X."""
 
 import numpy as np
 import xarray as xr
@@ -19,16 +19,14 @@ from gearmesh.reproduction.figures.canvas import (
     styled,
 )
 from gearmesh.reproduction.figures.orbit import present, scale
+from gearmesh.reproduction.frequencies import LOOP_END
 
 ROWS = (("lubricant", "•", palette.RED), ("material", "□", palette.BLUE))
 COLUMNS = (("c", "quadratic damping"), ("d", "cubic damping"), ("h", "both together"))
 MINIMA = palette.INK
 
 DETAIL_X = (0.595, 0.665)
-"""Range of the tuning in Detail X."""
-
-PAPER_END = 0.64
-"""Where the paper's branches in Detail X end."""
+"""Range of ν_s in Detail X."""
 
 
 @styled
@@ -56,7 +54,7 @@ def draw(bifurcation: xr.Dataset) -> Figure:
     nu = bifurcation["nu"].values
     grid[0, 0].set_xlim(nu.min(), nu.max())
     for axes in grid[1]:
-        axes.set_xlabel("tuning $\\nu_s$")
+        axes.set_xlabel("mesh frequency $\\nu_s$")
     if present(bifurcation, ["c-material"], "extremum_y_rel"):
         _add_detail(grid[1, 0], bifurcation.sel(variant="c-material"))
     inverse = any(axes.get_ylim()[0] < -scale(bifurcation).backlash for axes in grid[:, 0])
@@ -85,19 +83,19 @@ def _limits(extrema: xr.DataArray) -> tuple[float, float]:
     return low - margin, high + margin
 
 
-def _plot_extrema(axes: Axes, course: xr.Dataset, colour: str, size: float = 1.7) -> None:
+def _plot_extrema(axes: Axes, curve: xr.Dataset, colour: str, size: float = 1.7) -> None:
     """Draw maxima in `colour` and minima in ink, as pixels: there are tens of thousands."""
-    nu, y = np.broadcast_arrays(course["nu"].values[:, None], course["extremum_y_rel"].values)
-    kind = course["extremum_kind"].values
+    nu, y = np.broadcast_arrays(curve["nu"].values[:, None], curve["extremum_y_rel"].values)
+    kind = curve["extremum_kind"].values
     for which, tint in ((kind > 0, colour), (kind < 0, MINIMA)):
         axes.plot(
             nu[which], y[which], ls="none", marker=".", ms=size, mew=0, color=tint, rasterized=True
         )
 
 
-def _add_detail(axes: Axes, course: xr.Dataset) -> None:
-    """Enlarge the branches that the orbits' loops add between the outer two."""
-    near = course.sel(nu=slice(*DETAIL_X))
+def _add_detail(axes: Axes, curve: xr.Dataset) -> None:
+    """Enlarge the branches that belong to the loops of the orbits."""
+    near = curve.sel(nu=slice(*DETAIL_X))
     if near.sizes["nu"] < 2:
         return
     y = near["extremum_y_rel"]
@@ -109,8 +107,8 @@ def _add_detail(axes: Axes, course: xr.Dataset) -> None:
     inset.set_xticks([0.60, 0.62, 0.64, 0.66])
     inset.tick_params(labelsize=6.5, length=2)
     inset.set_title("Detail X", fontsize=7.5, pad=2)
-    inset.axvline(PAPER_END, color=palette.GREY, lw=0.6, ls=(0, (4, 2)))
-    inset.text(PAPER_END, low, " paper:\n 0.64", fontsize=6.5, va="bottom", color=palette.GREY)
+    inset.axvline(LOOP_END, color=palette.GREY, lw=0.6, ls=(0, (4, 2)))
+    inset.text(LOOP_END, low, " paper:\n 0.64", fontsize=6.5, va="bottom", color=palette.GREY)
     start, end = DETAIL_X
     axes.add_patch(
         Rectangle((start, low), end - start, high - low, fill=False, ec=palette.GREY, lw=0.6)

@@ -1,4 +1,4 @@
-"""Fig. 4: c-lubricant where it is steady and where it is not, in the phase plane and in time."""
+"""Fig. 4: periodic and not periodic motion of c-lubricant, in the phase plane and in time."""
 
 from collections.abc import Mapping
 
@@ -20,14 +20,21 @@ from gearmesh.reproduction.figures.canvas import (
     styled,
 )
 from gearmesh.reproduction.figures.orbit import last_periods, scale, switches
+from gearmesh.reproduction.frequencies import FIG_4
 
-TUNINGS = (0.60, 1.05, 1.20)
 SPANS = (21, 5)
 """Last mesh periods that the time courses show."""
 
 _STIFFNESS_UNIT = 1e5
-_POINTS = {"A": "^", "B": "v"}
-_STROBE = {"ls": "none", "marker": "o", "ms": 5.5, "mew": 0.7, "mfc": "none", "mec": palette.BLUE}
+_SWITCHES = {"A": "^", "B": "v"}
+_POINT = {
+    "ls": "none",
+    "marker": "o",
+    "ms": 5.5,
+    "mew": 0.7,
+    "mfc": "none",
+    "mec": palette.BLUE,
+}
 _SWITCH = {"ls": "none", "ms": 3.6, "mew": 0.6, "mec": "white", "mfc": palette.INK}
 
 
@@ -38,15 +45,15 @@ def draw(cases: Mapping[float, xr.Dataset]) -> Figure:
     Parameters
     ----------
     cases : mapping from float to xarray.Dataset
-        Cases with their time courses, by their tuning; those at `TUNINGS` are drawn.
+        Cases with their time courses, by their ν_s; those at `FIG_4` are drawn.
 
     Returns
     -------
     Figure
-        A column for each tuning; from above: the phase plane of all kept periods; y, y' and the
-        stiffnesses over the last 21 periods; the same over the last five.
+        A column for each ν_s. From top to bottom: the phase plane of all kept periods; y, y' and
+        the stiffnesses over the last 21 periods; the same over the last 5.
     """
-    courses = [cases[nu] for nu in TUNINGS if nu in cases]
+    courses = [cases[nu] for nu in FIG_4 if nu in cases]
     if not courses:
         return empty()
     figure = Figure(figsize=(WIDTH, 9.6), layout="constrained")
@@ -67,9 +74,9 @@ def _draw_phase_planes(row: np.ndarray, cases: list[xr.Dataset]) -> None:
         course = last_periods(case, kept.kept_periods)
         y, v = course["y_rel"].values, course["v_rel"].values
         axes.plot(y, v, color=palette.RED, lw=0.5)
-        strobe = slice(-kept.kept_periods, None)
-        axes.plot(case["strobe_y_rel"][strobe], case["strobe_v_rel"][strobe], **_STROBE)
-        for (name, marker), where in zip(_POINTS.items(), switches(course), strict=True):
+        boundaries = slice(-kept.kept_periods, None)
+        axes.plot(case["strobe_y_rel"][boundaries], case["strobe_v_rel"][boundaries], **_POINT)
+        for (name, marker), where in zip(_SWITCHES.items(), switches(course), strict=True):
             axes.plot(y[where], v[where], marker=marker, **_SWITCH)
             _name_point(axes, name, y[where], v[where])
         axes.set_title(f"{tag})  $\\nu_s$ = {case.attrs['nu_s']:.2f}")
@@ -142,7 +149,7 @@ def _draw_courses(grid: np.ndarray, cases: list[xr.Dataset], periods: int) -> No
 
 def _mark_switches(column: np.ndarray, course: xr.Dataset) -> None:
     period = course["period"].values
-    for (name, marker), where in zip(_POINTS.items(), switches(course), strict=True):
+    for (name, marker), where in zip(_SWITCHES.items(), switches(course), strict=True):
         for axes, variable in ((column[0], "y_rel"), (column[1], "v_rel")):
             axes.plot(period[where], course[variable].values[where], marker=marker, **_SWITCH)
         column[2].tick_params(which="both", top=False)
@@ -160,7 +167,7 @@ def _mark_switches(column: np.ndarray, course: xr.Dataset) -> None:
 
 
 def _shade_time(axes: Axes, period: np.ndarray, regime: np.ndarray) -> None:
-    """Colour the stretches of contact loss and inverse mesh."""
+    """Colour the time spent in contact loss and in inverse mesh."""
     for which, colour in ((0, palette.CONTACT_LOSS), (-1, palette.INVERSE_MESH)):
         axes.fill_between(
             period,
@@ -180,7 +187,7 @@ def _handles() -> list[Artist]:
         Line2D([], [], color=palette.RED, label=f"$y$, {V} of c •"),
         Line2D([], [], color=palette.PALE, lw=1.8, label="$C(t)$"),
         Line2D([], [], color=palette.INK, lw=0.7, label="$C(t)\\,(H_1+H_2)$"),
-        Line2D([], [], label="once a period", **_STROBE),
+        Line2D([], [], label="stroboscopic points", **_POINT),
         Line2D([], [], marker="^", label="A: $C$ goes to $C_{\\max}$", **point),
         Line2D([], [], marker="v", label="B: $C$ goes to $C_{\\min}$", **point),
         *region_handles(inverse=False)[1:],

@@ -1,4 +1,4 @@
-"""Fig. 5: the phase portrait of c-material over the whole range of the tuning."""
+"""Fig. 5: the phase portrait of c-material over the whole range of ν_s."""
 
 from collections.abc import Iterable, Mapping
 
@@ -13,7 +13,7 @@ from gearmesh.reproduction.figures.canvas import WIDTH, V, empty, styled
 from gearmesh.reproduction.figures.orbit import closed, last_periods, switches
 
 SPACING = 0.02
-"""Least distance in the tuning between two orbits, so that they can be told apart."""
+"""Least distance in ν_s between two orbits, so that they can be told apart."""
 
 TURNING_POINTS_WITHOUT_LOOP = 2
 """A plain orbit turns twice a period; a loop adds two turning points."""
@@ -21,17 +21,17 @@ TURNING_POINTS_WITHOUT_LOOP = 2
 
 @styled
 def draw(cases: Mapping[float, xr.Dataset]) -> Figure:
-    """Draw the last period's orbits in the space of y', y and the tuning.
+    """Draw the last period's orbits in the space of ν_s, y and y'.
 
     Parameters
     ----------
     cases : mapping from float to xarray.Dataset
-        Cases with their time courses, by their tuning.
+        Cases with their time courses, by their ν_s.
 
     Returns
     -------
     Figure
-        Orbits with a loop in blue, others in grey, and the courses of the points A and B.
+        Orbits with a loop in blue, others in grey, and the lines of the points A and B.
     """
     if not cases:
         return empty()
@@ -59,17 +59,19 @@ def draw(cases: Mapping[float, xr.Dataset]) -> Figure:
     return figure
 
 
-def _spaced(tunings: Iterable[float]) -> list[float]:
+def _spaced(frequencies: Iterable[float]) -> list[float]:
     chosen: list[float] = []
-    for nu in sorted(tunings):
+    for nu in sorted(frequencies):
         if not chosen or nu - chosen[-1] > SPACING - 1e-9:
             chosen.append(nu)
     return chosen
 
 
 def dress(axes: Axes3D, cases: Mapping[float, xr.Dataset]) -> None:
-    """Name the axes of a phase portrait and look at it from where the paper does."""
-    axes.set(xlabel="tuning $\\nu_s$", ylabel="$y$ in $y_{st}$", zlabel=f"{V} in $y_{{st}}$")
+    """Label the axes of a phase portrait and set the view of the paper."""
+    axes.set(
+        xlabel="mesh frequency $\\nu_s$", ylabel="$y$ in $y_{st}$", zlabel=f"{V} in $y_{{st}}$"
+    )
     axes.set_xlim(min(cases), max(cases))
     axes.set_box_aspect((1.9, 1.0, 0.9), zoom=0.95)
     axes.view_init(elev=20, azim=-62)

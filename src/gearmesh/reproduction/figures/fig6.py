@@ -1,4 +1,4 @@
-"""Fig. 6: phase portraits of c-material with the printed damping and with five times as much."""
+"""Fig. 6: phase portraits of c-material with the printed damping and with 5 times that."""
 
 from collections.abc import Mapping
 from typing import Any
@@ -14,13 +14,11 @@ from gearmesh.reproduction.figures import palette
 from gearmesh.reproduction.figures.canvas import WIDTH, V, empty, styled
 from gearmesh.reproduction.figures.fig5 import dress
 from gearmesh.reproduction.figures.orbit import closed, last_periods, scale, switches
+from gearmesh.reproduction.frequencies import CROSSING
 
 RANGE = (0.6, 0.8)
-CROSSING = 0.61
-"""Where the paper sees the red courses exceed the blue ones."""
-
 STRONGER = 5
-"""How much stronger the damping of the second portrait is."""
+"""Factor on the damping of the second portrait."""
 
 LOOKS = ((palette.BLUE, "-", "B"), (palette.RED, (0, (5, 1)), "B′"))
 """Colour, line and name of the point B for each damping; the dashes serve print in grey."""
@@ -28,18 +26,18 @@ LOOKS = ((palette.BLUE, "-", "B"), (palette.RED, (0, (5, 1)), "B′"))
 
 @styled
 def draw(printed: Mapping[float, xr.Dataset], strong: Mapping[float, xr.Dataset]) -> Figure:
-    """Draw the orbits of the last period in perspective and along the axis of the tuning.
+    """Draw the orbits of the last period in perspective and along the ν_s axis.
 
     Parameters
     ----------
     printed, strong : mapping from float to xarray.Dataset
-        Cases of c-material with their time courses, by their tuning, with the printed damping
+        Cases of c-material with their time courses, by their ν_s, with the printed damping
         and with five times as much; those in `RANGE` are drawn.
 
     Returns
     -------
     Figure
-        a) in perspective, b) along the axis of the tuning with the orbits at `CROSSING` strong.
+        a) in perspective, b) along the ν_s axis with the orbits at `CROSSING` strong.
     """
     portraits = [_within(cases) for cases in (printed, strong)]
     if not all(portraits):
@@ -92,7 +90,7 @@ def _within(cases: Mapping[float, xr.Dataset]) -> dict[float, xr.Dataset]:
 
 
 def _draw_point(axes: Axes, cases: Mapping[float, xr.Dataset], name: str, colour: str) -> None:
-    """Draw the course of the switch from C_max to C_min over the tuning."""
+    """Draw the points of the switch from C_max to C_min over ν_s."""
     track: list[tuple[float, ...]] = []
     for _, case in sorted(cases.items()):
         course = last_periods(case, 1)

@@ -13,9 +13,6 @@ from gearmesh.reproduction.figures.canvas import WIDTH, A, V, empty, styled
 from gearmesh.reproduction.figures.fig6 import LOOKS, STRONGER, damping_handles
 from gearmesh.reproduction.figures.orbit import closed, last_periods, switches
 
-TUNING = 0.61
-"""The paper does not print it; its text speaks of 0.61."""
-
 PERIODS = 2
 ROWS = (
     ("y_rel", 1.0, "$y$ in $y_{st}$"),
@@ -30,13 +27,13 @@ ROWS = (
 
 @styled
 def draw(printed: xr.Dataset | None, strong: xr.Dataset | None) -> Figure:
-    """Draw phase planes and time courses at one tuning.
+    """Draw phase planes and time courses at one ν_s.
 
     Parameters
     ----------
     printed, strong : xarray.Dataset or None
         Cases of c-material with their time courses, with the printed damping and with five
-        times as much; None where the study lacks one.
+        times as much; None if missing in the study.
 
     Returns
     -------

@@ -1,4 +1,4 @@
-"""What figures read off a dataset or a case: its scales, its last periods, its switches."""
+"""What figures need from a dataset or a case: its scales, its last periods, its switches."""
 
 import json
 from collections.abc import Iterable, Mapping
@@ -65,7 +65,7 @@ def read_time_courses(
     folder : Path or str
         Place of the case files, ``results/cases``.
     time_courses : mapping
-        The configuration's ``study.time_courses``: variant -> tunings.
+        The configuration's ``study.time_courses``: variant -> ν_s.
     *variants : str
         Names of the variants that are wanted.
 
@@ -88,8 +88,8 @@ def read_time_courses(
     return courses
 
 
-def by_tuning(courses: TimeCourses, variant: str) -> dict[float, xr.Dataset]:
-    """Return the cases of one variant by their tuning, in its order."""
+def by_nu(courses: TimeCourses, variant: str) -> dict[float, xr.Dataset]:
+    """Return the cases of one variant by their ν_s, in ascending order."""
     return {
         nu: case
         for (name, nu), case in sorted(courses.items(), key=lambda item: item[0])
@@ -123,7 +123,7 @@ def switches(course: xr.Dataset) -> tuple[np.ndarray, np.ndarray]:
     -------
     tuple of ndarray
         Points A, where C_min gives way to C_max (a pair of teeth comes into mesh), and
-        points B, where C_max gives way to C_min: the paper's loops melt into B.
+        points B, where C_max gives way to C_min. The loops of the paper melt into B.
     """
     stiffness = course["stiffness"].values
     step = stiffness - np.roll(stiffness, 1)

@@ -1,9 +1,8 @@
-"""Colours and markers, once: the regions of the mesh and the courses of Tab. 1.
+"""Colours and markers: the regions of the mesh and the response curves of Tab. 1.
 
-The courses take a blue and a vermilion that stay apart for colour-blind readers, grey and
-black, and the paper's symbols, which stay apart in print without colour. The region colours
-are the paper's white, yellow and red, pale enough to lie behind a course and unequal in
-lightness.
+Blue and vermilion can be told apart by colour-blind readers, and the paper's symbols can be told
+apart in print without colour. The regions have the paper's colours white, yellow and red. They are
+pale, because curves are drawn over them, and differ in lightness.
 """
 
 from dataclasses import dataclass
@@ -22,8 +21,8 @@ RED = "#d5501a"
 
 
 @dataclass(frozen=True, slots=True)
-class Course:
-    """Look of one course of Tab. 1.
+class Look:
+    """Look of the response curves with damping in one place.
 
     Attributes
     ----------
@@ -49,10 +48,10 @@ class Course:
     size: float
 
 
-COURSES = {
-    "conservative": Course("○", "no damping in the mesh", "o", GREY, True, 2.6),
-    "material": Course("□", "material damping", "s", BLUE, True, 4.2),
-    "both": Course("×", "material and lubricant damping", "x", INK, True, 3.8),
-    "lubricant": Course("•", "lubricant damping", "o", RED, False, 1.9),
+LOOKS = {
+    "conservative": Look("○", "no damping in the mesh", "o", GREY, True, 2.6),
+    "material": Look("□", "material damping", "s", BLUE, True, 4.2),
+    "both": Look("×", "material and lubricant damping", "x", INK, True, 3.8),
+    "lubricant": Look("•", "lubricant damping", "o", RED, False, 1.9),
 }
-"""Courses by the second word of the variant's name (``c-lubricant``)."""
+"""Looks by the second word of the variant's name (``c-lubricant``)."""
