@@ -183,7 +183,7 @@ def _package(file: Path, level: int) -> str:
 def _files(name: str) -> tuple[Path, ...]:
     """Return the file of a module, and the packages that importing it runs.
 
-    The package itself, which offers names of its modules to users, counts only where it is used.
+    The package itself offers names of all its modules: what uses one of them depends on all.
     """
     package, *parts = name.split(".")
     if package != PACKAGE.name or parts == ["__version__"]:
@@ -193,4 +193,4 @@ def _files(name: str) -> tuple[Path, ...]:
     place = PACKAGE.joinpath(*parts)
     modules = (place.with_suffix(".py"), place / "__init__.py")
     found = [file for file in (*packages, *modules) if file.is_file()]
-    return tuple(found) if found or len(parts) > 1 else (PACKAGE / "__init__.py",)
+    return tuple(found) if found or len(parts) > 1 else tuple(PACKAGE.rglob("*.py"))

@@ -181,7 +181,7 @@ class Orbit:
         lost, inverse = turns[:, REGIME] == CONTACT_LOSS, turns[:, REGIME] == INVERSE_MESH
         inside[lost] = np.minimum(-turns[lost, HEIGHT], turns[lost, HEIGHT] - back)
         inside[inverse] = back - turns[inverse, HEIGHT]
-        corrected = self.state + _correction(self.passage, self.state)
+        corrected = self.state + newton_correction(self.passage, self.state)
         finer = passage(self.problem, corrected, self.periods, longest_angle=0.5 * LONGEST_ANGLE)
         others = np.linalg.eigvals(finer.jacobian)
         changes = [float(np.abs(others - one).min()) for one in self.multipliers]
@@ -257,7 +257,7 @@ def correct(problem: Problem, state: np.ndarray, periods: int = 1) -> Orbit:
 
 def _improve(orbit: Orbit) -> Orbit | None:
     """Return the orbit after one damped correction, or None if none makes it better."""
-    correction = _correction(orbit.passage, orbit.state)
+    correction = newton_correction(orbit.passage, orbit.state)
     share = 1.0
     while share >= _SHORTEST_CORRECTION:
         state = orbit.state + share * correction
@@ -269,7 +269,7 @@ def _improve(orbit: Orbit) -> Orbit | None:
     return None
 
 
-def _correction(moved: Passage, state: np.ndarray) -> np.ndarray:
+def newton_correction(moved: Passage, state: np.ndarray) -> np.ndarray:
     """Return Newton's correction of a state on P^n(x) - x; the shortest one if it is singular."""
     matrix = moved.jacobian - np.eye(4)
     return np.linalg.lstsq(matrix, state - moved.end, rcond=1e-14)[0]
