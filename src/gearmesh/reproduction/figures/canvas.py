@@ -1,6 +1,7 @@
 """Common parts of all figures: style, regions, axis in micrometres, saving."""
 
 import functools
+import io
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -61,6 +62,16 @@ def save(figure: Figure, path: Path | str) -> tuple[Path, Path]:
         with replacing(svg) as temporary:
             figure.savefig(temporary, format="svg", metadata={"Date": None, "Creator": None})
     return png, svg
+
+
+def picture(figure: Figure, path: Path | str | None = None) -> bytes:
+    """Return a figure as PNG, and write it as `save` does if `path` is given."""
+    if path is not None:
+        return save(figure, path)[0].read_bytes()
+    image = io.BytesIO()
+    with style.context(["default", STYLE]):
+        figure.savefig(image, format="png", metadata={"Software": None})
+    return image.getvalue()
 
 
 def note(axes: Axes, text: str) -> None:
