@@ -38,6 +38,8 @@ ELSEWHERE = {
     ".venv/bin/pre-commit install": "changes the hooks of the repository that it runs in",
     ".venv/bin/snakemake --profile profiles/slurm": "tests/workflow/test_slurm.py runs it",
     "snakemake --profile profiles/slurm": "tests/workflow/test_slurm.py runs it",
+    ".venv/bin/snakemake --config study=config/mine.yaml": "all of the paper's cases; "
+    "docs/howto/pair.md does the same with fewer",
     "snakemake": "as make reproduce",
     "snakemake data": "tests/workflow/test_workflow.py runs it on a small study",
     "snakemake results/paper/cases/c-material/nu-0.6600.nc": "computes a letter of the paper",
