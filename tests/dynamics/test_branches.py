@@ -115,9 +115,7 @@ def test_unstable_between_the_folds_and_in_the_tongue(lubricant):
     assert folds[1] < folds[0]
 
 
-@pytest.mark.parametrize(
-    ("nu", "phase", "step"), [(0.7, 0.2845, 0.03), (1.15, 0.0, 0.02), (0.62, 0.6, 0.011)]
-)
+@pytest.mark.parametrize(("nu", "phase", "step"), [(1.15, 0.2845, 0.04), (0.62, 0.6, 0.02)])
 def test_special_points_depend_on_neither_start_nor_phase_nor_steps(lubricant, nu, phase, step):
     orbit = find_orbit(problem(nu, "c-lubricant", initial_phase=phase, **HEAVY))
     branch = follow(orbit, "nu", (0.6, 1.2), longest_step=step)

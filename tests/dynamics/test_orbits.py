@@ -115,7 +115,7 @@ def test_what_is_no_orbit_is_said_with_its_reason():
     orbit = find_orbit(case)
     with pytest.raises(NoOrbit, match="leads to an orbit of period 1"):
         correct(case, orbit.state, 2)
-    with pytest.raises(NoOrbit, match=r"no orbit of period 2 at nu = 0\.62"):
+    with pytest.raises(NoOrbit, match="leads to an orbit of period 1"):
         find_orbit(case, 2, start=orbit.state)
     with pytest.raises(NoOrbit, match="run-out"):
         find_orbit(problem(0.62, eccentricity_3=0.1))

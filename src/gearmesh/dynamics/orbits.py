@@ -30,6 +30,9 @@ from gearmesh.solvers.reduced.variational import (
 LARGEST_RESIDUAL = 1e-11
 """Largest |P^n(x) - x| of an orbit, in y_st and y_st Omega_s."""
 
+FARTHEST = 100.0
+"""Size of y, in y_st, beyond which orbits are not looked for."""
+
 _MOST_CORRECTIONS = 40
 _SHORTEST_CORRECTION = 1.0 / 1024.0
 # States this close are the same: a shorter period is looked for at this distance.
@@ -219,12 +222,17 @@ def find_orbit(problem: Problem, periods: int = 1, start: np.ndarray | None = No
     """
     if not is_reducible(problem):
         raise NoOrbit("orbits: run-out, profile deviation and Fourier stiffness are not covered")
+    if start is not None:
+        return correct(problem, np.asarray(start, float), periods)
     reason = ""
-    for state in starts(problem) if start is None else [np.asarray(start, float)]:
+    for state in starts(problem):
         try:
-            return correct(problem, state, periods)
+            orbit = correct(problem, state, periods)
         except NoOrbit as error:
             reason = reason or str(error)
+            continue
+        if max(orbit.y_max, -orbit.y_min) < FARTHEST:
+            return orbit
     raise NoOrbit(f"no orbit of period {periods} at nu = {problem.nu:.6g}: {reason}")
 
 

@@ -7,6 +7,7 @@ import numpy as np
 from scipy.optimize import brentq
 
 from gearmesh.dynamics.continuation import Curve, Point, at_phase, clear_phase
+from gearmesh.dynamics.orbits import FARTHEST
 from gearmesh.dynamics.special_points import flip_test
 from gearmesh.errors import NoOrbit
 from gearmesh.solvers.reduced.period_map import passage
@@ -20,16 +21,13 @@ LONGEST_STEP = 0.03
 It grows in proportion to motions of more than `_LARGE`.
 """
 
-FARTHEST = 100.0
-"""Size of y, in y_st, at which a branch is not followed further."""
-
 MOST_POINTS = 4000
 """Points after which a branch is given up."""
 
 LIMIT, CLOSED, HALVED, FAR = "limit", "closed", "half the period", "far"
 """Ends of a branch: at a limit of the parameter, at its own start, at a flip of an orbit of half
 the period, where the orbits of the branch come again one half of their period later, and at
-motions larger than `FARTHEST`."""
+motions larger than `gearmesh.dynamics.orbits.FARTHEST`."""
 
 _FIRST_STEP = 0.25  # of the longest
 _GROWTH = 1.4
