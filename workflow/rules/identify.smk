@@ -5,10 +5,6 @@ DESIGNS = PLAN.designs.designs
 FOCUSED = [name for name, design in DESIGNS.items() if design.around]
 
 
-def batches_of(*designs):
-    return layout.batch_files(PLACES, PLAN.designs, *designs)
-
-
 rule samples:
     input:
         read=lambda wildcards: (
@@ -33,8 +29,10 @@ rule samples:
 
 rule box:
     input:
-        read=lambda wildcards: batches_of(
-            *layout.family(PLAN.designs, DESIGNS[wildcards.design].around)
+        read=lambda wildcards: layout.batch_files(
+            PLACES,
+            PLAN.designs,
+            *layout.family(PLAN.designs, DESIGNS[wildcards.design].around),
         ),
         again=lambda wildcards: PLAN.again("box", wildcards.design),
     output:
@@ -52,7 +50,7 @@ rule box:
 
 rule all_samples:
     input:
-        read=batches_of(*DESIGNS),
+        read=layout.batch_files(PLACES, PLAN.designs, *DESIGNS),
         again=PLAN.again("all_samples"),
     output:
         layout.dataset(PLACES),
