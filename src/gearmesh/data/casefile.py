@@ -196,6 +196,7 @@ def common_attributes(parameters: Pair) -> dict[str, str | float]:
     return {
         "parameters": parameters.canonical(),
         "parameters_sha256": parameters.digest(),
+        "history": "gearmesh: integrated from static equilibrium, in the units of its variables",
         "solver": "adaptive Taylor series with located events",
         "solver_tolerance": parameters.tolerance,
         **{f"{name}_version": number for name, number in provenance.versions().items()},
