@@ -7,6 +7,8 @@
 #   snakemake --profile profiles/slurm               on a cluster
 #
 # This file loads, checks and includes; the rules are in workflow/rules, a file for each stage.
+import os
+import re
 import sys
 
 from snakemake.utils import min_version
@@ -44,6 +46,7 @@ wildcard_constraints:
     variant="|".join(PLAN.study.variants).replace(".", r"\."),
     design="|".join(PLAN.designs.designs),
     index=r"\d+",
+    root=re.escape(os.getcwd()),
 
 
 localrules:

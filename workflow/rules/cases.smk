@@ -30,9 +30,11 @@ rule case:
         PLACES.log("case-{variant}-{nu}"),
     shell:
         'python -m gearmesh.pipeline case "$STUDY" - {wildcards.variant} {wildcards.nu}'
-        " 2>&1 | tee {log}"
+        " 2>&1 | tee {log:q}"
 
 
 use rule case as case_by_whole_path with:
     output:
-        pipeline.whole_path(PLACES.case("{variant}", "{nu}")),
+        "{root}/" + str(PLACES.case("{variant}", "{nu}")),
+    log:
+        "{root}/" + str(PLACES.log("case-{variant}-{nu}")),

@@ -199,6 +199,7 @@ def common_attributes(pair: Pair) -> dict[str, str | float]:
     return {
         "parameters": pair.canonical(),
         "parameters_sha256": pair.digest(),
+        "history": "gearmesh: integrated, and written in the units of the variables",
         "solver": "adaptive Taylor series with located events",
         "solver_tolerance": pair.tolerance,
         **{f"{name}_version": number for name, number in provenance.versions().items()},

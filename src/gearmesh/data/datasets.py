@@ -109,8 +109,8 @@ def _created(
             {
                 "Conventions": "CF-1.11",
                 "title": f"{study.title}: {title}",
-                "history": f"gearmesh: put together from all cases of the study {study.name}",
                 **casefile.common_attributes(study.pair),
+                "history": f"gearmesh: put together from all cases of the study {study.name}",
             }
         )
         for name, size in sizes.items():

@@ -296,9 +296,3 @@ def prefix(plan: Plan) -> str:
     folder = shlex.quote(str(Path(sys.executable).parent))
     study = shlex.quote(str(plan.study.path))
     return f"set -euo pipefail; export PATH={folder}:$PATH STUDY={study}; unset NUMBA_DISABLE_JIT; "
-
-
-def whole_path(place: Path) -> str:
-    """Return a place with the project's root before it; braces in the root are no wildcards."""
-    root = str(Path.cwd()).replace("{", "{{").replace("}", "}}")
-    return f"{root}/{place}"
