@@ -181,6 +181,8 @@ def test_the_drift_of_the_mean_rotation_is_reported():
 
 
 LONG = """
+import signal
+signal.signal(signal.SIGINT, signal.default_int_handler)  # ignored where tests run in background
 from problems import problem
 from gearmesh.solvers.simulation import simulate
 simulate([problem(0.8, {name!r}, revolutions=1, stiffness_harmonics={harmonics})])
@@ -200,7 +202,10 @@ def test_a_long_run_can_be_interrupted(harmonics):
         assert process.stdout.readline() == b"ready\n"
         time.sleep(1.0)
         process.send_signal(signal.SIGINT)
-        _, errors = process.communicate(timeout=60)
+        try:
+            _, errors = process.communicate(timeout=60)
+        finally:
+            process.kill()
     assert b"KeyboardInterrupt" in errors
 
 
