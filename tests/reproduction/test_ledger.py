@@ -173,7 +173,7 @@ def test_what_holds_within_a_tolerance_holds_within_a_wider_one(measured, narrow
 
 @pytest.fixture
 def measuring(monkeypatch, pair):
-    """Let F2.1 measure what a test says, and check a claim with it."""
+    """Let F2.1 measure the value that a test gives, and check a claim with it."""
 
     def run(measure, **changes):
         monkeypatch.setitem(checking.MEASURES, "F2.1", measure)

@@ -123,7 +123,7 @@ def test_a_pair_cannot_be_changed_in_place(pair):
     [
         ({"backlsh": "40 um"}, "backlsh: unknown key (did you mean 'backlash'?)"),
         ({"backlash": "4 kg"}, "backlash: found '4 kg'; unit 'kg' is of another kind"),
-        ({"backlash": 0.04}, "backlash: found 0.04; unit missing; wanted is a length"),
+        ({"backlash": 0.04}, "backlash: found 0.04; unit missing; expected: a length"),
         ({"teeth": 2}, "teeth: found 2; out of range; allowed is 3 to 1000"),
         ({"contact_ratio": None}, "contact_ratio: found nothing"),
         ({"kept_revolutions": 6}, "kept_revolutions: found 6; allowed are at most the 5"),

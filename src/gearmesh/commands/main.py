@@ -26,7 +26,7 @@ class _Parser(argparse.ArgumentParser):
 
 
 def _check_options(parser: argparse.ArgumentParser, arguments: Sequence[str]) -> None:
-    """Refuse unknown options by name, before argparse misses the one that was meant."""
+    """Report unknown options by name, before argparse reports the intended option as missing."""
     known = {text for action in _actions(parser) for text in action.option_strings}
     for argument in arguments:
         option = argument.partition("=")[0]
@@ -71,7 +71,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
             file=sys.stderr,
         )
         return OUT_OF_MEMORY
-    except BrokenPipeError:  # the reader of our output has left, as `head` does
+    except BrokenPipeError:  # the reader of our output, such as `head`, has closed it
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         return 0
 

@@ -103,7 +103,7 @@ def grid_dataset(
     Returns
     -------
     xarray.Dataset
-        The scalars over the axes, and extrema and stroboscopic points over one axis more. The
+        The scalars over the axes, and extrema and stroboscopic points over one more axis. The
         rows of extrema are filled with not-a-number.
     """
     shape = tuple(len(values) for values in axes.values())

@@ -1,8 +1,8 @@
-"""Which source files, and which versions of what they use, stand behind a result.
+"""The source files, and the versions of the packages they use, that a result depends on.
 
 `sources` follows the imports of a file through this package, so no list of files has to be kept by
-hand. `code_digest` puts into one digest what a function is made of: the pipeline runs a job again
-when it changes.
+hand. `code_digest` combines all code of a function in one digest; the pipeline runs a job again
+when the digest changes.
 """
 
 import ast

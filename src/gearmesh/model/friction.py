@@ -34,8 +34,9 @@ Without run-out both signs are +1 (`follows_run_out`).
 Rules with run-out
 ------------------
 With run-out both signs of eq. (6) act: F_T = -A sign(z_3' - z_2') with A = f_T E gamma times the
-first sign, that of the bracket. The paper does not say what holds where an argument is 0. These
-rules do, and they decide results: with other ones y_max of a run may change in its second digit.
+first sign, that of the bracket. The paper does not state what holds if an argument is 0. The
+following rules define it. They affect results: with other rules y_max of a run may change in its
+second digit.
 
 1. Opposed sliding sticks. Where A > 0 friction opposes the sliding. At z_3' = z_2' the flanks then
    stick (Filippov) while the force that holds them (`holding_force`) is within <-A; A>, and F_T

@@ -112,7 +112,7 @@ def _symbol(match: re.Match[str]) -> str:
 
 @cache
 def environment() -> jinja2.Environment:
-    """Return the environment of the templates: everything is escaped, nothing may be missing."""
+    """Return the environment of the templates: it escapes all values and refuses missing ones."""
     made = jinja2.Environment(
         loader=jinja2.FileSystemLoader(TEMPLATES),
         autoescape=True,

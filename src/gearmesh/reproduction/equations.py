@@ -18,7 +18,7 @@ class Equation:
     latex : tuple of str
         The equation, in lines.
     reading : str
-        How the model takes it, in one or two sentences.
+        How the model interprets it, in one or two sentences.
     """
 
     number: int

@@ -1,4 +1,4 @@
-"""What the compiled sweep takes of a run, and what it leaves; a run's way in and out of a lane."""
+"""Input and output of the compiled sweep, and how a run enters and leaves a lane."""
 
 import numpy as np
 
@@ -92,7 +92,7 @@ def get(work, width, row, lane):
 
 @inner
 def take_value(summary, y):
-    """Let y_max and y_min include `y`."""
+    """Update y_max and y_min with `y`."""
     summary.y_max = max(summary.y_max, y)
     summary.y_min = min(summary.y_min, y)
 
@@ -146,7 +146,7 @@ def begin(work, width, lane, runs, summaries, strobes, index):
 
 @inner
 def idle(work, width, lane):
-    """Leave the lane without a run: nothing moves in it, and it never ends."""
+    """Mark the lane as empty: nothing moves in it, and it never ends."""
     for row in range(N_ROWS):
         put(work, width, row, lane, 0.0)
     put(work, width, REGIME, lane, NORMAL_MESH)

@@ -23,9 +23,9 @@ from gearmesh.solvers.reduced.workspace import MAX_SEGMENTS, N_ROWS
 from gearmesh.solvers.response import EXTREMUM, LOOSENING, Companion, Response, assemble
 
 _EXTREMA_PER_PERIOD = 64
-# Samples that are closer to a switch than rounding can tell are on it.
+# Samples that are as close to a switch as this, which is rounding, are on it.
 _ON_EDGE = 1e-9
-# Steps between two returns to Python, which sees an interruption then: some 0.1 s.
+# Steps between two returns to Python, where an interruption is noticed: some 0.1 s.
 _MOST_TURNS = 100_000
 
 
@@ -48,7 +48,7 @@ def _build_scalar_sweep(key: str, cache: bool) -> Callable[..., bool]:
 
 
 _vector_sweep = persistent(_build_vector_sweep)
-# A run alone keeps one lane busy; there scalar instructions are faster, and as exact.
+# A single run fills one lane only; scalar instructions are then faster, and as exact.
 _scalar_sweep = persistent(_build_scalar_sweep)
 
 
@@ -116,7 +116,7 @@ def _runs(
     runs = np.array(rows + rows if estimate_errors else rows).view(RUN)[:, 0]
     companions = runs[n:]
     companions["log_tolerance"] = math.log2(tolerance * LOOSENING)
-    # Displaced in the rotation, they show a sensitive orbit even where events decide the steps.
+    # The displacement of the rotation reveals a sensitive orbit even if events decide the steps.
     start = companions["start"]
     start[:, 0] = ((start[:, 0] - start[:, 2]) + tolerance) + start[:, 2]
     companions["regime"] = regime_of(start[:, 0], companions["backlash"])
