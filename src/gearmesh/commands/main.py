@@ -134,7 +134,7 @@ def _add_runs(commands: "argparse._SubParsersAction[_Parser]", pair: _Parser) ->
     sweep.add_argument(
         "--direction",
         choices=("up", "down"),
-        help="let each run go on from the end of the run before it",
+        help="start each run from the end of the run before it",
     )
     sweep.set_defaults(run=_sweep)
 
@@ -145,7 +145,7 @@ def _start_option() -> _Parser:
         "--start",
         metavar=("Y", "V"),
         nargs=2,
-        help="y and dy/dtau_s at the start, such as '12 um' '0 um'; a bare number counts y_st",
+        help="initial y and dy/dtau_s, such as '12 um' '0 um'; a bare number is in y_st",
     )
     return option
 

@@ -62,7 +62,7 @@ def final_state(dataset: xr.Dataset) -> State:
     """
     state = _with_tuples(json.loads(dataset.attrs.get(_FINAL_STATE, "null")))
     if state is None:
-        raise InputError("start: the dataset holds no run that came to its end")
+        raise InputError("start: the dataset holds no completed run")
     branches = state.pop("branches")
     if branches is not None:
         branches = Branches(**branches | {"problem": Problem(**branches["problem"])})

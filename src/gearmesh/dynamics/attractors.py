@@ -103,7 +103,7 @@ def reached(problems: Sequence[Problem], transient: int = TRANSIENT) -> Reached:
     problems : sequence of Problem
         They differ in initial state and initial phase only.
     transient : int
-        Revolutions before the motion is looked at.
+        Revolutions before the motion is classified.
     """
     runs = [replace(one, revolutions=transient, kept_revolutions=0) for one in problems]
     known: list[Attractor] = []
@@ -233,7 +233,7 @@ def basins(
     phases : sequence of float, optional
         Initial phases; that of `problem` if not given.
     transient : int
-        Revolutions before the motion is looked at.
+        Revolutions before the motion is classified.
     """
     phases = [problem.initial_phase] if phases is None else list(phases)
     rest = -2.0 / problem.bearing_stiffness

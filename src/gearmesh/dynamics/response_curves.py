@@ -28,7 +28,7 @@ SMALLEST_JUMP = 0.2
 """Least step of y_max that counts as a jump: a twentieth of the height of Fig. 2."""
 
 VISIBLE_SPREAD = 0.02
-"""Spread of extrema from which one curve looks like several: the width of a line in Fig. 3."""
+"""Spread of extrema above which one curve is seen as several: the width of a line in Fig. 3."""
 
 Measure = Callable[[Response], float]
 

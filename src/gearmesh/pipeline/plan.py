@@ -38,7 +38,7 @@ _FAR_FUTURE = 2**32 - 1
 
 @dataclass(frozen=True)
 class Plan:
-    """A study as the pipeline sees it.
+    """A study and the plan of its jobs.
 
     Attributes
     ----------

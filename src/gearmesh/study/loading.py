@@ -63,7 +63,7 @@ def _name(path: Path, name: object) -> str:
     if not isinstance(name, str) or not _NAME.fullmatch(name):
         raise InputError(
             f"{path}: name: found {shown(name)}; allowed are letters, digits, '.', '_' and '-', "
-            "64 at most, not '.' first; without a name, the file's name counts"
+            "64 at most, not '.' first; without a name, that of the file is used"
         )
     return name
 

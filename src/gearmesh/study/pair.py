@@ -130,15 +130,15 @@ class Pair(Section):
         default=0,
     )
     initial_phase: float = quantity(
-        *("1", "p_0", "start within the mesh period; 0 is the middle of the C_max pulse", 0.0, 1.0),
+        *("1", "p_0", "mesh phase at which a run starts; 0: middle of the C_max pulse", 0.0, 1.0),
         default=0.0,
     )
     initial_displacement: float | None = quantity(
-        *("mm", "y_0", "relative motion y at the start; static equilibrium if open", -1e3, 1e3),
+        *("mm", "y_0", "initial relative motion y; static equilibrium if open", -1e3, 1e3),
         default=None,
     )
     initial_velocity: float = quantity(
-        "mm", "y'_0", "dy/dτ_s at the start, τ_s = Ω_s t", -1e3, 1e3, default=0.0
+        "mm", "y'_0", "initial dy/dτ_s, τ_s = Ω_s t", -1e3, 1e3, default=0.0
     )
     revolutions: int = quantity("1", "n_r", "revolutions that are run", 1, 10_000, default=5)
     kept_revolutions: int = quantity(

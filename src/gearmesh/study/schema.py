@@ -106,7 +106,7 @@ def _read_item(item: object, declared: Mapping[str, Any]) -> object:
     except ValueError as error:
         if isinstance(item, list | tuple):
             raise
-        raise ValueError(f"in it {shown(item)} is wrong: {error}") from None
+        raise ValueError(f"item {shown(item)} is wrong: {error}") from None
 
 
 def _range(low: float, high: float, unit: str) -> str:

@@ -123,7 +123,7 @@ def _split(text: str, unit: str) -> tuple[float, str | None]:
     if multiple := _multiple(text):
         scale = multiple["scale"]
         known = f"no scale '{scale}', only {', '.join(SCALES)}"
-        problem = f"'{scale}' cannot stand here" if scale in SCALES else known
+        problem = f"'{scale}' is not allowed here" if scale in SCALES else known
         raise ValueError(f"{problem}; expected: {wanted(unit)}")
     match = _QUANTITY.fullmatch(text) if len(text) <= _LONGEST else None
     if match is None:

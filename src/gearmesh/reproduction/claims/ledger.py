@@ -81,7 +81,7 @@ class Claim(Section):
     @model_validator(mode="after")
     def _is_complete(self) -> "Claim":
         if (self.expected_status == REPRODUCED) != (self.reason is None):
-            raise ValueError("reason: needed for an expected_status that is not 'reproduced' only")
+            raise ValueError("reason: needed if, and only if, expected_status is not 'reproduced'")
         if isinstance(self.tolerance, dict):
             if not isinstance(self.expected, dict):
                 raise ValueError("tolerance: found a mapping; allowed is a number, as for expected")
@@ -90,7 +90,7 @@ class Claim(Section):
         for name, target, tolerance in self.targets():
             of = f" of {name!r}" if name else ""
             if isinstance(target, Bound) != (tolerance is None):
-                raise ValueError(f"tolerance: needed for an expected number only{of}")
+                raise ValueError(f"tolerance: needed for expected numbers, not for bounds{of}")
             if tolerance is not None and not 0 <= tolerance < math.inf:
                 raise ValueError(f"tolerance: found {tolerance:g}{of}; allowed is a number >= 0")
         return self
@@ -130,7 +130,7 @@ class Entry(Claim):
         return self.judged and self.status != self.expected_status
 
     def as_json(self) -> dict[str, Any]:
-        """Return the entry as it stands in `results/claims.json`."""
+        """Return the entry in the form of `results/claims.json`."""
         optional = {"tolerance_reason", "reason"}
         found = self.model_dump(mode="json")
         return {

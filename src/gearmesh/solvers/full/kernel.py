@@ -80,7 +80,7 @@ def _settle_direction(case, segment, mode, fourier, series, rest, extrema, summa
         series[V, 0] = 0.0
     now = np.sign(series[V, 0])
     if abs(series[V, 0]) < rest:
-        # With y' damping vanishes, and the acceleration does not depend on the direction.
+        # Damping vanishes with y', so the acceleration does not depend on the direction.
         expand(case, segment, mode, fourier, series, 2)
         if now == 0.0:
             now = np.sign(series[V, 1])
