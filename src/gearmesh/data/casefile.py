@@ -277,7 +277,7 @@ def created(path: Path) -> Iterator[netCDF4.Dataset]:
         writing.replacing(path) as temporary,
         netCDF4.Dataset(temporary, "w", format="NETCDF4") as file,
     ):
-        # Values that nobody writes would be filled first, at the cost of a second pass.
+        # All values are written, so filling them first would only cost a second pass.
         file.set_fill_off()
         yield file
 

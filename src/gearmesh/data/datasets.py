@@ -143,7 +143,7 @@ def _define(file: netCDF4.Dataset, field: Field) -> None:
     for name in filter(None, (field.name, field.relative)):
         variable = casefile.define(file, field, name, dimensions, chunksizes=chunk, **_COMPRESSED)
         variable.coordinates = _COORDINATES
-        # Every chunk is written whole and once; megabytes of them for each variable would stay.
+        # Every chunk is written once, as a whole. A cache would keep megabytes for each variable.
         variable.set_var_chunk_cache(size=1)
 
 

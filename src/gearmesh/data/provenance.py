@@ -183,7 +183,8 @@ def _package(file: Path, level: int) -> str:
 def _files(name: str) -> tuple[Path, ...]:
     """Return the file of a module, and the packages that importing it runs.
 
-    The package itself offers names of all its modules: what uses one of them depends on all.
+    The package itself offers names of all its modules, so code that uses one of them depends on
+    all.
     """
     package, *parts = name.split(".")
     if package != PACKAGE.name or parts == ["__version__"]:

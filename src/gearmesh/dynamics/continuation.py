@@ -185,7 +185,7 @@ class Curve:
     def _gradients(self, place: np.ndarray) -> np.ndarray:
         """Return the gradients of the defect by differences, except for those of P^n in the state.
 
-        They decide the direction of Newton's steps and not where they end.
+        They affect the direction of Newton's steps, but not the point to which the steps converge.
         """
         rows = len(place) - 1
         gradients = np.zeros((rows, len(place)))

@@ -43,8 +43,8 @@ second digit.
    takes that value. They slide again as soon as it takes more.
 2. Driven sliding does not stick. Where A < 0 eq. (6) drives the sliding, and nothing can hold it.
    From z_3' = z_2' the flanks go where the bearings pull them.
-3. Double contact neither holds nor drives, nor does contact loss. There A = 0; in double contact
-   because the forces of both pairs cancel. From z_3' = z_2' the flanks go where the bearings pull
+3. In double contact and in contact loss friction neither holds nor drives, because A = 0. In double
+   contact the forces of both pairs cancel. From z_3' = z_2' the flanks go where the bearings pull
    them, and the second sign follows.
 4. From exact rest, where the bearings do not pull, the second sign is +1. This is how a run starts
    in double contact, where the sign acts on the moments alone.

@@ -1,6 +1,6 @@
 """Execute notebooks with papermill.
 
-The executed notebook is written also when a cell fails. Times and random identifiers are taken out
+The executed notebook is written even if a cell fails. Times and random identifiers are taken out
 of it, so the same inputs give the same bytes. Everything that kernels read and leave behind is in
 a folder of their own: they run in the interpreter of the pipeline whatever kernels are installed,
 need no home folder, and do not get into each other's way.

@@ -160,7 +160,7 @@ def _satisfies(value: Any, target: Target, tolerance: float | None) -> bool:
         low = -math.inf if target.at_least is None else target.at_least
         high = math.inf if target.at_most is None else target.at_most
         return low <= value <= high
-    # A measured value that sits on the limit must not fail by the last bit.
+    # A measured value at the limit must not fail because of rounding.
     return tolerance is not None and abs(value - target) <= tolerance * (1 + 1e-9)
 
 

@@ -237,7 +237,7 @@ def run(
     summaries,
     most_turns,
 ):
-    """Integrate one run, or go on with it.
+    """Integrate one run, or continue it.
 
     Parameters
     ----------

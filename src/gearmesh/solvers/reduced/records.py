@@ -65,7 +65,7 @@ RUN = np.dtype(
         ("log_tolerance", np.float64),
     ]
 )
-"""One run as the kernel takes it, times in tau_s; whole numbers too are kept as floating ones.
+"""One run as the kernel takes it. Times are in tau_s, and whole numbers are stored as floats.
 
 For each segment of a mesh period: its length, C/C_s, the share of the elastic force that friction
 adds to u'', and the number of the first sample of the period behind it. `start` is (y, y', b, b'),

@@ -1,4 +1,4 @@
-"""What follows an event: the next regime behind a level, the next segment of the mesh period.
+"""Changes after an event: the next regime beyond a level, the next segment of the mesh period.
 
 One instruction treats all lanes; masks select those in which the event has happened. The rows of a
 lane afterwards depend only on its regime, its segment and its run.
