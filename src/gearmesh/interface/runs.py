@@ -41,7 +41,7 @@ def simulate(
     Parameters
     ----------
     pair : Pair
-        The gear pair; `gearmesh.reproduction` returns the paper's.
+        The gear pair; `gearmesh.paper` returns the paper's.
     variant : str or Variant
         Which damping terms act where, as ``"c-lubricant"`` (``gearmesh variants`` lists all).
     nu : float

@@ -84,7 +84,7 @@ def read_mapping(path: Path) -> dict[str, object]:
 
 
 def read_value(text: str, where: str) -> object:
-    """Read one value, as it stands behind a key; `where` begins the message about a mistake."""
+    """Read one value, written as after a key; `where` begins the message about a mistake."""
     return _load(text, where)
 
 

@@ -110,7 +110,7 @@ def integrate(
 def _runs(
     problems: Sequence[Problem], tolerance: float, samples_per_period: int, estimate_errors: bool
 ) -> np.ndarray:
-    """Return the runs in the form that the sweep takes, their companions behind them."""
+    """Return the runs in the form that the sweep takes, followed by their companions."""
     n = len(problems)
     rows = [_run(problem, tolerance, samples_per_period) for problem in problems]
     runs = np.array(rows + rows if estimate_errors else rows).view(RUN)[:, 0]
@@ -178,7 +178,7 @@ def _start(problem: Problem) -> tuple[tuple[float, float, float, float], float, 
 
 
 def _sample_ends(parts: tuple[Segment, ...], per_period: int) -> list[int]:
-    """Return the number of the first sample behind each segment; one at its end is behind it."""
+    """Return the number of the first sample after each segment; one at its end is after it."""
     return [math.ceil(part.end * per_period - _ON_EDGE) for part in parts]
 
 
@@ -214,7 +214,7 @@ def _final_state(problem: Problem, summary: Mapping[str, Any]) -> State:
 
 
 class _Samples:
-    """A time course like `response.Samples`; all but y, v and a is computed when asked for."""
+    """A time course like `response.Samples`; all but y, v and a is computed on demand."""
 
     def __init__(self, problem: Problem, rows: np.ndarray, per_period: int) -> None:
         self._problem = problem
