@@ -1,5 +1,5 @@
-# Every target sets up what it needs. The environment is made again when it is no longer what was
-# made: when its lock, its folder or the chosen interpreter changed, or its interpreter is gone.
+# Every target sets up what it needs. The environment is made again if its lock, its folder or the
+# chosen interpreter has changed, or if its interpreter is gone.
 # CORES=2 limits the cores that the pipeline uses, PYTHON=python3.12 chooses the interpreter.
 PYTHON ?= python3
 CORES ?=
@@ -34,7 +34,7 @@ reproduce: $(STAMP) ## the paper: cases, datasets, figures, ledger and report
 test: $(STAMP) ## the whole test suite
 	$(BIN)/python -m pytest -n 2 --dist loadfile --no-loadscope-reorder
 
-test-fast: $(STAMP) ## the tests for the loop of work, under a minute
+test-fast: $(STAMP) ## the tests to run after each edit, under a minute
 	$(BIN)/python -m pytest -n 2 --dist loadfile --no-loadscope-reorder -m "not slow"
 
 bench: $(BENCH_STAMP) ## the benchmarks, peers side by side
@@ -92,4 +92,4 @@ $(BENCH_STAMP): $(STAMP) requirements-bench.lock
 	@$(LOCKED) -r .venv/first.txt
 	@if PATH="$(CURDIR)/$(BIN):$$PATH" $(LOCKED) -r requirements-bench.lock >.venv/numbalsoda.log 2>&1; \
 	then touch $@; \
-	else echo "numbalsoda is left out, for it needs a Fortran and a C++ compiler: see .venv/numbalsoda.log"; fi
+	else echo "numbalsoda is left out, because it needs a Fortran and a C++ compiler: see .venv/numbalsoda.log"; fi

@@ -32,8 +32,8 @@ except InputError as error:
 PLACES = PLAN.places
 LETTERS = list(PLAN.letters)
 
-# What runs the stages is the environment of Snakemake, whatever the PATH is. Neither it nor the
-# file of the study is part of a command: both may change without a job having to run again.
+# The stages run in the environment of Snakemake, whatever the PATH is. Neither this environment nor
+# the file of the study is part of a command, so both may change without a rerun of the jobs.
 shell.prefix(pipeline.prefix(PLAN))
 
 

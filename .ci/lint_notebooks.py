@@ -6,7 +6,7 @@ from pathlib import Path
 
 
 def has_outputs(path: Path) -> bool:
-    """Tell whether any code cell of a notebook keeps an output or a count."""
+    """Return whether any code cell of a notebook keeps an output or a count."""
     cells = json.loads(path.read_text(encoding="utf-8"))["cells"]
     code = [cell for cell in cells if cell["cell_type"] == "code"]
     return any(cell["outputs"] or cell["execution_count"] for cell in code)

@@ -80,7 +80,7 @@ def _say(text: str) -> None:
 
 
 def _load() -> tuple[list[tuple[Solver, Solve]], dict[str, str]]:
-    """Import what is there; say of the others why they are left out."""
+    """Import the available peers; print why the others are left out."""
     loaded, left_out = [], {}
     for solver in (OURS, *PEERS):
         try:

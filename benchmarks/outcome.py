@@ -35,7 +35,7 @@ class Deviation:
     Attributes
     ----------
     error : float
-        Largest difference of any strobe point, sample or extremum, in static deflections.
+        Largest difference of any stroboscopic point, sample or extremum, in static deflections.
     extrema_agree : bool
         Whether both have equally many extrema; where not, `error` leaves the extrema out.
     """

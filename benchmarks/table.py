@@ -46,7 +46,7 @@ def render(results: dict) -> str:
 
 
 def _ratios(rows: list[dict], times: dict, aim: float) -> list[str]:
-    """Say how many times faster than the fastest peer that reaches the aim."""
+    """Return lines that compare the time with that of the fastest peer that reaches the aim."""
     all_ours = [solver.name for solver in (OURS, *OURS_WITH_LESS)]
     lines = [
         f"{row['solver']}: only {row['error']['most']:.1e} is reached"

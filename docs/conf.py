@@ -38,7 +38,7 @@ nb_execution_timeout = 180
 nb_merge_streams = True
 nb_render_markdown_format = "myst"
 
-# Reference: what the docstrings say.
+# Reference: made from the docstrings.
 default_role = "code"  # `name` in a docstring is code
 autodoc_default_options = {
     "members": True,

@@ -222,7 +222,7 @@ class _Run:
         return rates(self.problem, time, state.tolist(), self.mode)
 
     def _settle_direction(self):
-        """At the start of the run the velocity may be 0: then a short way tells the direction."""
+        """The velocity may be 0 at the start of the run; a short step then shows the direction."""
         if self.direction == 0:
             _, v = self.relative_motion()
             if v == 0.0:

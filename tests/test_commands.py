@@ -32,7 +32,7 @@ def gearmesh(root):
 
 
 def refused(run):
-    """Check that a run ended as bad input does, and return what it said."""
+    """Check that a run ended as bad input does, and return its message."""
     assert run.returncode == 2
     assert run.stdout == ""
     [line] = run.stderr.splitlines()

@@ -14,7 +14,7 @@ def solve(problems: Sequence[Problem], tolerance: float) -> list[Outcome]:
 
 
 def solve_without_samples(problems: Sequence[Problem], tolerance: float) -> list[Outcome]:
-    """Solve the runs for extrema and strobe points alone."""
+    """Solve the runs for extrema and stroboscopic points alone."""
     return _solve(problems, tolerance, 0, False)
 
 

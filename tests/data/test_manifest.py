@@ -1,4 +1,4 @@
-"""Manifests: what sha256sum checks, and what they say."""
+"""Manifests: what sha256sum checks, and what they contain."""
 
 import subprocess
 

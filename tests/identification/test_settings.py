@@ -1,4 +1,4 @@
-"""What the configuration of the inference states, and what is said of mistakes in it."""
+"""The configuration of the inference, and the messages about mistakes in it."""
 
 from pathlib import Path
 

@@ -1,4 +1,4 @@
-"""Orbits and branches with units, and what is said where there are none."""
+"""Orbits and branches with units, and the messages if there are none."""
 
 import numpy as np
 import pytest

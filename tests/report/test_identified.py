@@ -44,30 +44,30 @@ def test_run_out_is_told_by_what_it_costs():
             {"F2.1": 0.0, "F7.1": 2.0},
             {"F2.1": 1.5, "F7.1": 0.0},
             "F2.1 fails with the least run-out that was tried. The reason is friction: .* does: "
-            r"F7\.1 fails with the least \(for want of friction\); all else that holds in "
-            r"this study holds up to the greatest .* 1\.5 static deflections\. What the paper "
-            r"describes are therefore wheels that run true, or a friction .* not turn\.</p>",
+            r"F7\.1 fails with the least \(because of the missing friction\); all other claims "
+            r"that hold in this study hold up to the greatest .* 1\.5 static deflections\. The "
+            r"paper therefore describes wheels without run-out, or friction .* the run-out\.</p>",
         ),
         (  # run-out costs nothing at first
             {"F2.1": 3.0, "F7.1": 2.0},
             {"F2.1": 1.5, "F7.1": 3.0},
-            "no claim is lost by the least run-out that was tried. 32 samples .* does: all that "
-            r"holds in this study holds up to an eccentricity of 1\.5 static deflections, beyond "
-            r"which F2\.1 fails\.</p>",
+            "no claim is lost by the least run-out that was tried. 32 samples .* does: all "
+            r"claims that hold in this study hold up to an eccentricity of 1\.5 static "
+            r"deflections, beyond which F2\.1 fails\.</p>",
         ),
         (  # one claim fails by friction, one by the eccentricity itself
             {"F2.1": 0.0, "F7.1": 0.0},
             {"F2.1": 2.0, "F7.1": 0.0},
             r"F2\.1, F7\.1 fail with the least run-out that was tried\. The reason for F2\.1 is "
-            r"friction: .* does: F7\.1 fails with the least; all else .* What the paper describes "
-            r"are therefore wheels that run true\.</p>",
+            r"friction: .* does: F7\.1 fails with the least; all other .* The paper therefore "
+            r"describes wheels without run-out\.</p>",
         ),
         (  # friction has no part in it
             {"F2.1": 0.0, "F7.1": 0.0},
             {"F2.1": 0.0, "F7.1": 0.0},
-            r"was tried\. 32 samples .* does: F2\.1, F7\.1 fail with the least; nothing that holds "
-            r"in this study is left\. What the paper describes are therefore wheels that run "
-            r"true\.</p>",
+            r"was tried\. 32 samples .* does: F2\.1, F7\.1 fail with the least; no claim that "
+            r"holds in this study still holds\. The paper therefore describes wheels without "
+            r"run-out\.</p>",
         ),
     ],
 )

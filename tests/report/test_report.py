@@ -204,7 +204,7 @@ def test_a_claim_whose_threshold_is_not_located_names_the_failed_run(small_run, 
     text = render(small_study, [entry], report.open_dataset(small_run / PLACES.resonance))
     summary = Page(text[: text.index('id="claims"')]).words
     assert Page(str(typeset(detail))).words in summary
-    assert "did not expect" in text
+    assert "unexpected status" in text
 
 
 def test_the_numbers_of_the_study_are_on_the_page(page, small_study):
@@ -250,8 +250,8 @@ def test_text_of_the_ledger_cannot_become_markup(small_run, small_study):
 def test_what_is_unexpected_is_said(small_run, small_study):
     resonance = report.open_dataset(small_run / PLACES.resonance)
     surprise = claim(status="deviates", measured=0.7)
-    assert "did not expect" in render(small_study, [surprise], resonance)
-    assert "did not expect" not in render(small_study, [claim()], resonance)
+    assert "unexpected status" in render(small_study, [surprise], resonance)
+    assert "unexpected status" not in render(small_study, [claim()], resonance)
 
 
 def test_all_seven_equations_are_mathml():

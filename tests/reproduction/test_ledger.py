@@ -73,10 +73,10 @@ def test_a_claim_is_read_with_its_id(tmp_path):
         ({"expected": "0.66 or so"}, "expected: found '0.66 or so'; allowed is a number"),
         ({"expected": True}, "expected: found True; allowed is a number"),
         ({"expected": {"at_least": 2, "at_most": 1}}, "at_least: 2 is above at_most, 1"),
-        ({"expected": {"at_most": 1}}, "tolerance: needed for an expected number only"),
+        ({"expected": {"at_most": 1}}, "tolerance: needed for expected numbers"),
         ({"expected": {}, "tolerance": None}, "expected.at_least: missing"),
         ({"expected": {"near": {}}}, "expected.at_least: missing"),
-        ({"tolerance": None}, "tolerance: needed for an expected number only"),
+        ({"tolerance": None}, "tolerance: needed for expected numbers"),
         ({"tolerance": -0.1}, "tolerance: found -0.1; allowed is a number >= 0"),
         ({"tolerance": {"near": 0.1}}, "tolerance: found a mapping; allowed is a number, as for"),
         ({"tolerance": {}}, "tolerance: found a mapping; allowed is a number, as for expected"),
@@ -84,9 +84,9 @@ def test_a_claim_is_read_with_its_id(tmp_path):
             {"expected": {"a": 1.0}, "tolerance": {"near": 0.1}},
             "tolerance: expected names no quantity 'near'",
         ),
-        ({"expected": {"a": 1.0}, "tolerance": {}}, "tolerance: needed for an expected number"),
-        ({"expected_status": "deviates"}, "reason: needed for an expected_status"),
-        ({"reason": "just so"}, "reason: needed for an expected_status"),
+        ({"expected": {"a": 1.0}, "tolerance": {}}, "tolerance: needed for expected numbers"),
+        ({"expected_status": "deviates"}, "reason: needed if, and only if"),
+        ({"reason": "just so"}, "reason: needed if, and only if"),
         ({"expected_status": "perhaps"}, "expected_status: found 'perhaps'"),
     ],
 )
@@ -173,7 +173,7 @@ def test_what_holds_within_a_tolerance_holds_within_a_wider_one(measured, narrow
 
 @pytest.fixture
 def measuring(monkeypatch, pair):
-    """Let F2.1 measure what a test says, and check a claim with it."""
+    """Let F2.1 measure the value that a test gives, and check a claim with it."""
 
     def run(measure, **changes):
         monkeypatch.setitem(checking.MEASURES, "F2.1", measure)

@@ -97,7 +97,7 @@ def test_a_failed_run_leaves_its_thresholds_unlocated_and_their_claims_not_testa
         for key, value in values.items():
             assert found[other][key] in (value, {"not_located": why}), (other, key)
 
-    # The thresholds of all other variants stand where the ledger does not look in this test.
+    # The thresholds of all other variants have values that the ledger does not read in this test.
     others = dict.fromkeys(("b-lubricant", "c-lubricant", "d-lubricant", "h-lubricant"), 1.0)
     known = {name: dict(others) for name in ("onset_maxima", "onset_minima", "first_jump")}
     known.setdefault(observable, {})[of] = found[observable][of]

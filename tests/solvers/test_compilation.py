@@ -37,7 +37,7 @@ def build_square(kept):
 
 
 def compile_and_count(together, folder, key, counts):
-    """Compile when all processes are ready; tell how often this one found nothing on disk."""
+    """Compile when all processes are ready; return how often this one found nothing on disk."""
     import numba
 
     numba.config.CACHE_DIR = str(folder)

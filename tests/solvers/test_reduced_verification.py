@@ -38,7 +38,7 @@ CASES = [
 @pytest.mark.parametrize(("name", "nu", "changes"), CASES, ids=lambda case: str(case))
 def test_agrees_with_dop853_on_six_coordinates(name, nu, changes):
     case = problem(nu, name, **changes)
-    # SciPy looks for events at the ends of its steps: short ones, to see a dip as short as this.
+    # SciPy checks for events at the ends of its steps, so the steps must be shorter than the dip.
     steps = 160 if (name, nu) == SHALLOW else 40
     course = integrate(case, rtol=1e-12, steps_per_period=steps)
     response = simulate([case], tolerance=1e-12)[0]
@@ -50,7 +50,7 @@ def test_agrees_with_dop853_on_six_coordinates(name, nu, changes):
 
 
 def test_the_cases_reach_what_they_are_for():
-    """Back flanks touch and contact is lost where the list says so."""
+    """Back flanks touch and contact is lost in the cases that the list marks."""
     reached = {
         (name, nu): simulate([problem(nu, name, **changes)])[0] for name, nu, changes in CASES
     }

@@ -129,7 +129,7 @@ direction: sideways | direction: found 'sideways'; allowed is 'up' or 'down'
 strong_damping: 5 | strong_damping: found 5; allowed is a mapping
 strong_damping: {factor: 1} | strong_damping.factor: found 1; allowed is any other than 1
 strong_damping: {factor: -5} | strong_damping.factor: found -5; out of range
-strong_damping: {factor: 5 y_st} | strong_damping.factor: found '5 y_st'; 'y_st' cannot stand here
+strong_damping: {factor: 5 y_st} | strong_damping.factor: found '5 y_st'; 'y_st' is not allowed here
 strong_damping: {variant: a-conservative} | allowed is a variant with damping
 strong_damping: {nu: {stop: 0.5}} | strong_damping.nu.stop: found 0.5, below start
 time_courses: 0.6 | time_courses: found 0.6; allowed is a mapping
@@ -224,7 +224,7 @@ def test_a_study_needs_no_base(write):
 
 @pytest.mark.parametrize("name", ["my study.yaml", ".yaml", "a:b.yaml"])
 def test_a_file_whose_name_is_no_name_of_a_study_must_state_one(write, name):
-    with pytest.raises(InputError, match="without a name, the file's name counts"):
+    with pytest.raises(InputError, match="without a name, that of the file is used"):
         load_study(write(FEW, name))
     assert load_study(write(FEW + "name: mine\n", name)).name == "mine"
 

@@ -1,4 +1,4 @@
-"""Studies from files: what they mean, and what is said of wrong ones."""
+"""Studies from files: what they mean, and the messages about wrong ones."""
 
 import string
 
@@ -41,7 +41,7 @@ def test_a_replaced_value_may_be_left_open(paper):
 MISTAKES = """
 contact_ratio=2.5 | contact_ratio: found 2.5; out of range; allowed is 1 to 2
 contact_ratio=0.9 | found 0.9; out of range; allowed is 1 to 2
-contact_ratio=1,569 | found '1,569'; not a quantity; use a decimal point; wanted is a plain number
+contact_ratio=1,569 | found '1,569'; not a quantity; use a decimal point; expected: a plain number
 contact_ratio=.nan | found nan; not finite
 contact_ratio=.inf | found inf; not finite
 contact_ratio=1e999 | found inf; not finite
@@ -49,10 +49,10 @@ contact_ratio= | found nothing; not a quantity
 contact-ratio=1.5 | contact-ratio: no such parameter (did you mean 'contact_ratio'?)
 stiffness_ratio=58.79 % of C_max | not a quantity
 stiffness_ratio=0 | out of range
-mesh_stiffness_max=400000 | found 400000; unit missing; wanted is a stiffness with its unit
-mesh_stiffness_max=4e5 N | unit 'N' is of another kind; wanted is a stiffness
+mesh_stiffness_max=400000 | found 400000; unit missing; expected: a stiffness with its unit
+mesh_stiffness_max=4e5 N | unit 'N' is of another kind; expected: a stiffness
 mesh_stiffness_max=4·10^5 N/mm | not a quantity
-reduced_mass=3.123 mm | found '3.123 mm'; unit 'mm' is of another kind; wanted is a mass
+reduced_mass=3.123 mm | found '3.123 mm'; unit 'mm' is of another kind; expected: a mass
 reduced_mass=-3 kg | found '-3 kg'; out of range; allowed is 1e-06 to 1e+06 kg
 reduced_mass=3.123 kgs | unknown unit 'kgs'
 teeth=21.5 | found 21.5; allowed is a whole number
@@ -60,17 +60,17 @@ teeth=twenty-one | not a quantity
 teeth=true | found True; not a quantity
 teeth=yes | found 'yes'; not a quantity
 teeth=[21, 21] | teeth: found a list of 2; allowed is a whole number
-damping=3.95 | unit missing; wanted is a damping coefficient
+damping=3.95 | unit missing; expected: a damping coefficient
 damping=3.95 N/mm | of another kind
 damping_2m=-1 N s/mm | damping_2m: found '-1 N s/mm'; out of range; allowed is 0 to 1e+06
 damping_4=1 N s/mm | damping_4: no such parameter (did you mean 'damping
 Damping=3.95 N s/mm | Damping: no such parameter (did you mean 'damping'?)
-pressure_angle=20 | unit missing; wanted is an angle
+pressure_angle=20 | unit missing; expected: an angle
 pressure_angle=20 mm | of another kind
 backlash=40um. | not a quantity
-backlash=0,04 mm | found '0,04 mm'; not a quantity; use a decimal point; wanted is a length
+backlash=0,04 mm | found '0,04 mm'; not a quantity; use a decimal point; expected: a length
 backlash=0 um | out of range
-backlash=8 C_s | found '8 C_s'; unit 'N/mm' is of another kind; wanted is a length
+backlash=8 C_s | found '8 C_s'; unit 'N/mm' is of another kind; expected: a length
 backlash=8 st | unknown unit 'st'
 backlash={value: 40 um} | found a mapping; not a quantity
 backlash=40 um: 3 | found a mapping; not a quantity
@@ -78,20 +78,20 @@ backlsh=40 um | backlsh: no such parameter (did you mean 'backlash'?)
 backlash=*a | aliases (*) are not supported
 backlash=!!python/object/apply:os.system [ls] | tags (!) are not supported
 backlash=[40 um | expected ',' or ']'
-body_mass=100 | unit missing; wanted is a mass
+body_mass=100 | unit missing; expected: a mass
 bearing_damping_ratio=3 | out of range; allowed is 0 to 1
 friction_coefficient=-0.05 | found -0.05; out of range
-eccentricity=[1 um, 2 kg] | found a list of 2; in it '2 kg' is wrong: unit 'kg' is of another kind
+eccentricity=[1 um, 2 kg] | found a list of 2; item '2 kg' is wrong: unit 'kg' is of another kind
 eccentricity_3=1 um | eccentricity_3: no such parameter (did you mean 'eccentricity'?)
 eccentricity_angle=400 deg | out of range
 initial_phase=90 deg | unit 'deg' where none belongs
-initial_displacement=1 | unit missing; wanted is a length
-initial_velocity=1 mm/s | unit 'mm/s' is of another kind; wanted is a length
+initial_displacement=1 | unit missing; expected: a length
+initial_velocity=1 mm/s | unit 'mm/s' is of another kind; expected: a length
 stiffness_harmonics=2.5 | allowed is a whole number
 profile_deviation=1 um | found '1 um'; allowed is a list
-profile_deviation=[[1 um]] | profile_deviation.0.1: missing; wanted is (cos, sin) amplitudes
+profile_deviation=[[1 um]] | profile_deviation.0.1: missing; expected: (cos, sin) amplitudes
 profile_deviation=[[1 um, 0 um, 0 um]] | profile_deviation.0: found a list of 3; allowed are at
-profile_deviation=[[1 um, 0 kg]] | in it '0 kg' is wrong: unit 'kg' is of another kind
+profile_deviation=[[1 um, 0 kg]] | item '0 kg' is wrong: unit 'kg' is of another kind
 revolutions=0 | out of range
 revolutions=1e9 | out of range
 kept_revolutions=6 | kept_revolutions: found 6; allowed are at most the 5
@@ -154,7 +154,7 @@ BAD_FILES = {
     "no base": (b"base: missing.yaml", "missing.yaml: cannot be read (No such file"),
     "base a list": (b"base: [paper.yaml]", "base: found a list of 1; allowed is the name of a fi"),
     "itself": (b"base: study.yaml", "inherit in a circle"),
-    "nothing stated": (b"title: x", "contact_ratio: missing; wanted is contact ratio"),
+    "nothing stated": (b"title: x", "contact_ratio: missing; expected: contact ratio"),
     "code": (b"title: !!python/name:os.system", "tags (!) are not supported"),
     "old section": (b"base: paper.yaml\nprinted: {teeth: 3}", "printed: unknown key"),
     "derived": (b"base: paper.yaml\ndamping_ratio: 0.1", "damping_ratio: unknown key; it is comp"),

@@ -123,7 +123,7 @@ def test_a_pair_cannot_be_changed_in_place(pair):
     [
         ({"backlsh": "40 um"}, "backlsh: unknown key (did you mean 'backlash'?)"),
         ({"backlash": "4 kg"}, "backlash: found '4 kg'; unit 'kg' is of another kind"),
-        ({"backlash": 0.04}, "backlash: found 0.04; unit missing; wanted is a length"),
+        ({"backlash": 0.04}, "backlash: found 0.04; unit missing; expected: a length"),
         ({"teeth": 2}, "teeth: found 2; out of range; allowed is 3 to 1000"),
         ({"contact_ratio": None}, "contact_ratio: found nothing"),
         ({"kept_revolutions": 6}, "kept_revolutions: found 6; allowed are at most the 5"),
@@ -174,7 +174,7 @@ def test_values_in_nested_lists_may_be_relative(pair):
         ("backlash", "1e5 y_st", "out of range; allowed is 1e-06 to 100 mm"),
         ("static_deflection", "2 y_st", "static_deflection: found '2 y_st'; 'y_st' cannot stand"),
         ("static_deflection", "2 m_red", "static_deflection: found '2 m_red'; 'm_red' cannot"),
-        ("reduced_mass", "2 m_red", "reduced_mass: found '2 m_red'; 'm_red' cannot stand here"),
+        ("reduced_mass", "2 m_red", "reduced_mass: found '2 m_red'; 'm_red' is not allowed here"),
     ],
 )  # fmt: skip
 def test_a_wrong_scale_is_reported_at_its_parameter(pair, name, value, message):

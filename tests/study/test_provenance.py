@@ -39,7 +39,7 @@ def test_a_setting_of_a_run_says_nothing_about_the_gear(study):
     for name in ("revolutions", "kept_revolutions", "samples_per_period", "tolerance"):
         assert parameter(study, name).kind == "setting"
     assert parameter(study, "initial_velocity").kind == "setting"
-    # The paper's study assumes a start, and says why.
+    # The paper's study assumes an initial phase, with a reason.
     assert parameter(study, "initial_phase").kind == "assumed"
 
 

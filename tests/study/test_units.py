@@ -79,4 +79,4 @@ def test_any_text_is_a_number_or_a_value_error(text):
         try:
             assert isinstance(parse(text, unit), float)
         except ValueError as error:
-            assert "wanted is" in str(error)
+            assert "expected:" in str(error)

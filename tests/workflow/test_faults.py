@@ -1,4 +1,4 @@
-"""What is pulled out under a run: afterwards a rerun ends with the same bytes, or says what to do.
+"""Faults during a run: a rerun ends with the same bytes, or its message gives the remedy.
 
 Real runs of real processes, on a tiny study.
 """
@@ -33,7 +33,7 @@ def fresh(tiny: Project, tmp_path: Path) -> Project:
 
 
 def heals(project: Project, undisturbed: Project) -> bool:
-    """Run again; tells whether all ends as if nothing had happened."""
+    """Run again, and return whether the results are as if nothing had happened."""
     finished = project.run("data")
     assert finished.returncode == 0, finished.stdout
     return project.results() == undisturbed.results()

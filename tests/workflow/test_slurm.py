@@ -12,7 +12,7 @@ import pytest
 from project import Project
 
 PLACE = Path("/etc/slurm/slurm.conf")
-"""Where all of Slurm looks; what it starts does not inherit $SLURM_CONF."""
+"""Path where Slurm searches by default; its processes do not inherit $SLURM_CONF."""
 
 NEEDED = ("munged", "slurmctld", "slurmd", "sbatch", "squeue")
 

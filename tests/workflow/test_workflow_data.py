@@ -18,7 +18,7 @@ def copied(tiny: Project, tmp_path: Path) -> Project:
 
 
 def counts(project: Project) -> tuple[int, int]:
-    """Run, and return how many cases were computed and kept; (0, 0) if no job looked at them."""
+    """Run, and return how many cases were computed and kept; (0, 0) if no job processed them."""
     finished = project.run("data")
     assert finished.returncode == 0, finished.stdout
     found = re.findall(r"(\d+) computed, (\d+) kept", finished.stdout)

@@ -1,5 +1,6 @@
-# Integrate: a job for each letter of Tab. 1. It writes a file for each case too, and its manifest
-# names them all. Thousands of declared files would cost Snakemake more than the cases.
+# Integrate the cases, with one job for each letter of Tab. 1. The job also writes a file for each
+# case, and its manifest names them all. Snakemake would take longer for thousands of declared
+# files than the cases take.
 rule cases:
     input:
         again=lambda wildcards: PLAN.again("cases", wildcards.letter),
@@ -20,7 +21,7 @@ rule cases:
         " 2>&1 | tee {log}"
 
 
-# A case file that is asked for by its name: where its letter is up to date, it is there already.
+# A case file that is requested by its name. If its letter is up to date, the file exists already.
 rule case:
     input:
         lambda wildcards: ancient(PLACES.batch(wildcards.variant[0])),

@@ -1,4 +1,4 @@
-# Put all checks together, and judge.
+# Collect all checks, and compare them with the ledger.
 rule printed:
     input:
         again=PLAN.again("printed"),

@@ -8,7 +8,7 @@ rule thresholds:
         PLACES.log("thresholds"),
     benchmark:
         PLACES.benchmark("thresholds")
-    # All figures wait for it, and it compiles code of its own: it goes first.
+    # This job goes first, because all figures wait for it and it compiles code of its own.
     priority: 3
     params:
         made_of=PLAN.made_of("thresholds"),
@@ -30,7 +30,7 @@ rule fig1:
         PLACES.log("fig1"),
     benchmark:
         PLACES.benchmark("fig1")
-    # It needs nothing that is computed: it fills the time that others wait for compiled code.
+    # This job needs no results, so it runs while other jobs wait for compiled code.
     priority: 2
     params:
         made_of=PLAN.made_of("fig1"),

@@ -1,6 +1,7 @@
-# Infer what the paper does not print: samples of the open parameters, in batches; focused designs
-# fill a box around the best of what came before. Nothing here is part of the default target, which
-# reads the committed table config/identified.yaml.
+# Infer the parameters that the paper does not print. The samples of the open parameters are
+# computed in batches; a focused design fills a box around the best samples of the designs before
+# it. Nothing here is part of the default target, which reads the committed table
+# config/identified.yaml.
 DESIGNS = PLAN.designs.designs
 FOCUSED = [name for name, design in DESIGNS.items() if design.around]
 

@@ -26,7 +26,7 @@ class _Parser(argparse.ArgumentParser):
 
 
 def _check_options(parser: argparse.ArgumentParser, arguments: Sequence[str]) -> None:
-    """Refuse unknown options by name, before argparse misses the one that was meant."""
+    """Report unknown options by name, before argparse reports the intended option as missing."""
     known = {text for action in _actions(parser) for text in action.option_strings}
     for argument in arguments:
         option = argument.partition("=")[0]
@@ -71,7 +71,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
             file=sys.stderr,
         )
         return OUT_OF_MEMORY
-    except BrokenPipeError:  # the reader of our output has left, as `head` does
+    except BrokenPipeError:  # the reader of our output, such as `head`, has closed it
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         return 0
 
@@ -134,7 +134,7 @@ def _add_runs(commands: "argparse._SubParsersAction[_Parser]", pair: _Parser) ->
     sweep.add_argument(
         "--direction",
         choices=("up", "down"),
-        help="let each run go on from the end of the run before it",
+        help="start each run from the end of the run before it",
     )
     sweep.set_defaults(run=_sweep)
 
@@ -145,7 +145,7 @@ def _start_option() -> _Parser:
         "--start",
         metavar=("Y", "V"),
         nargs=2,
-        help="y and dy/dtau_s at the start, such as '12 um' '0 um'; a bare number counts y_st",
+        help="initial y and dy/dtau_s, such as '12 um' '0 um'; a bare number is in y_st",
     )
     return option
 

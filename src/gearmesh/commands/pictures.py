@@ -47,7 +47,7 @@ def _label(run: Any) -> str:
 
 
 def _parameter_rows(first: Any, second: Any) -> list[str]:
-    """Say in which variant, frequency and parameters two runs differ."""
+    """List the variant, frequency and parameters in which two runs differ."""
     stated = [
         {"variant": run.attrs["variant"], "nu_s": run.attrs["nu_s"]}
         | json.loads(run.attrs["parameters"])

@@ -135,12 +135,12 @@ def _frequencies(text: str) -> list[float]:
 
 
 def check_output(path: Path) -> str:
-    """Refuse an output before the run that could not be written after it, or would destroy others.
+    """Refuse an output that could not be written after the run, or that would destroy other files.
 
     Returns
     -------
     str
-        What to say of a run that was there before; empty if there was none.
+        Remark about an earlier run that is replaced; empty if there is none.
     """
     folder = path.parent
     if path.is_dir():

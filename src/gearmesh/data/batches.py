@@ -1,8 +1,8 @@
-"""Batches: the cases of a letter of Tab. 1, and the file that hands them on to the datasets.
+"""Batches: the cases of a letter of Tab. 1, and the file from which the datasets are made.
 
 A job computes all cases of a letter and writes them, one after the other, into one batch file. The
-datasets are made of these few files. The thousands of case files are for readers; a study that is
-too large for them (``case_files: false``) does without and loses nothing else.
+datasets are made of these few files. The thousands of case files are for readers; a study with too
+many cases leaves them out (``case_files: false``), and its datasets are the same.
 """
 
 import contextlib
@@ -38,8 +38,8 @@ class Content:
     counts : ndarray, shape (n_cases,)
         Numbers of extrema.
     columns : dict of str to ndarray
-        Scalars (n_cases,), strobes (n_cases, n_boundaries), and the extrema of all cases one
-        after the other.
+        Scalars (n_cases,), stroboscopic points (n_cases, n_boundaries), and the extrema of all
+        cases one after the other.
     """
 
     variants: list[str]
@@ -147,7 +147,7 @@ def read_batch(path: Path) -> Content:
 
 
 def read_counts(path: Path) -> np.ndarray:
-    """Read the numbers of extrema of the cases of a batch file, and no more."""
+    """Read only the number of extrema of each case of a batch file."""
     with _opened(path) as file:
         return file["extremum_count"][:]
 

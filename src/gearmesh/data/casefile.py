@@ -2,7 +2,7 @@
 
 `FIELDS` is the layout. A `Record` holds a case as its file does: variable name -> array, so what
 is read from a file is written again with the same bytes. A file states in its attributes how it
-was made (`attributes`). Whether it is still as it was written is what manifests say
+was made (`attributes`). Manifests show whether it is still as it was written
 (`gearmesh.data.manifest`).
 """
 
@@ -30,12 +30,12 @@ Record = dict[str, np.ndarray]
 """A case as its file holds it: variable name -> array."""
 
 MISSING = -1
-"""What stands for an integer that does not exist."""
+"""Value of an integer that does not exist."""
 
 
 @dataclass(frozen=True, slots=True)
 class Field:
-    """One variable of a case file; one in mm has a twin, ``_rel`` behind its name, in y_st.
+    """One variable of a case file; one in mm has a twin in y_st, with ``_rel`` in its name.
 
     Attributes
     ----------
@@ -52,7 +52,7 @@ class Field:
     flags : mapping of int to str
         Values and meanings of a CF flag variable.
     fill : float
-        Value that stands for one that does not exist; other numbers are not-a-number then.
+        Value of an integer that does not exist; a float is then not-a-number.
     """
 
     name: str
@@ -159,7 +159,7 @@ def _values(response: Response) -> Iterator[tuple[Field, object]]:
 def case_digest(pair: Pair, case: Case) -> str:
     """Return the SHA-256 of all that decides the numbers of a case.
 
-    It is blind to parameters without effect on this case: a conservative run has the same digest
+    Parameters without effect on this case do not count: a conservative run has the same digest
     whatever the damping.
     """
     scales = (
@@ -213,7 +213,7 @@ def write_case(path: Path | str, attributes: Mapping[str, str | float], columns:
     Parameters
     ----------
     path : Path or str
-        File; its folder is made where it lacks.
+        File; its folder is made if it is missing.
     attributes : mapping
         See `attributes`.
     columns : Record
@@ -271,13 +271,13 @@ def created(path: Path) -> Iterator[netCDF4.Dataset]:
     Raises
     ------
     InputError
-        If it cannot be written: one line that says why.
+        If it cannot be written; the message is one line with the reason.
     """
     with (
         writing.replacing(path) as temporary,
         netCDF4.Dataset(temporary, "w", format="NETCDF4") as file,
     ):
-        # Values that nobody writes would be filled first, at the cost of a second pass.
+        # All values are written, so filling them first would only cost a second pass.
         file.set_fill_off()
         yield file
 

@@ -37,7 +37,7 @@ _LABELS = (
 
 _COORDINATES = " ".join(("damping_factor", *(name for _, name, _ in _LABELS)))
 _BLOCK = 512
-"""Frequencies that are written at a time, which bounds the memory whatever their number."""
+"""Number of frequencies that are written at a time; it limits the memory that is needed."""
 
 _COMPRESSED = {"compression": "zlib", "complevel": 1, "shuffle": True}
 
@@ -70,8 +70,8 @@ def write_datasets(
     study : Study
         The study; it sets the variants, the frequencies and y_st.
     batch_files : sequence of Path
-        All its batches, which hold a variant each in one piece, by ascending frequency. One of
-        them at a time is in memory.
+        All its batches. In each, the cases of a variant are contiguous, by ascending frequency.
+        Only one batch at a time is in memory.
     resonance, bifurcation : Path
         Files to write.
     """
@@ -103,7 +103,7 @@ def _created(
     path: Path, study: Study, title: str, sizes: Mapping[str, int]
 ) -> Iterator[netCDF4.Dataset]:
     with casefile.created(path) as file:
-        # A chunk may reach beyond the last frequency: what stands there must not be left to chance.
+        # A chunk may reach beyond the last frequency; the values there must be defined, too.
         file.set_fill_on()
         file.setncatts(
             {
@@ -143,7 +143,7 @@ def _define(file: netCDF4.Dataset, field: Field) -> None:
     for name in filter(None, (field.name, field.relative)):
         variable = casefile.define(file, field, name, dimensions, chunksizes=chunk, **_COMPRESSED)
         variable.coordinates = _COORDINATES
-        # Every chunk is written whole and once; megabytes of them for each variable would stay.
+        # Every chunk is written once, as a whole. A cache would keep megabytes for each variable.
         variable.set_var_chunk_cache(size=1)
 
 
@@ -176,7 +176,7 @@ def _by_block(batch_files: Iterable[Path], nu: np.ndarray) -> Iterator[tuple[str
 
 
 def _cells(field: Field, content: Content, nu: np.ndarray, longest: int) -> np.ndarray:
-    """Lay what a variant has out over all frequencies."""
+    """Spread the values of a variant over all frequencies."""
     stored = content.columns[field.relative or field.name]
     if field.dimension == "extremum":
         rectangle = np.full((content.nu.size, max(longest, 1)), _absent(field), field.kind)

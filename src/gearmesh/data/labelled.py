@@ -62,7 +62,7 @@ def final_state(dataset: xr.Dataset) -> State:
     """
     state = _with_tuples(json.loads(dataset.attrs.get(_FINAL_STATE, "null")))
     if state is None:
-        raise InputError("start: the dataset holds no run that came to its end")
+        raise InputError("start: the dataset holds no completed run")
     branches = state.pop("branches")
     if branches is not None:
         branches = Branches(**branches | {"problem": Problem(**branches["problem"])})
@@ -103,7 +103,7 @@ def grid_dataset(
     Returns
     -------
     xarray.Dataset
-        The scalars over the axes, and extrema and stroboscopic points over one axis more. The
+        The scalars over the axes, and extrema and stroboscopic points over one more axis. The
         rows of extrema are filled with not-a-number.
     """
     shape = tuple(len(values) for values in axes.values())

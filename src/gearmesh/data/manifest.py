@@ -1,7 +1,7 @@
 """Manifests: the SHA-256 of all files that a job wrote and read.
 
-A manifest says in its first line what the job was made of besides these files, and then names the
-files relative to the folder of the study, as ``sha256sum -c`` reads them::
+The first line of a manifest holds digests of everything else that the job was made of. Then come
+the files, relative to the folder of the study, as ``sha256sum -c`` reads them::
 
     # made of 5e0c…
     8e7f…  batches/c.nc
@@ -10,7 +10,7 @@ files relative to the folder of the study, as ``sha256sum -c`` reads them::
     …
 
 While its manifest holds, a job need not run again: the times of files do not matter. When it runs
-again, the manifest tells it which files are still as they were written.
+again, the manifest shows which files are still as they were written.
 """
 
 import hashlib

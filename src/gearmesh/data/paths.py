@@ -17,13 +17,13 @@ FIGURE_NAMES = tuple(f"fig{number}" for number in range(1, 8))
 NOTEBOOK_NAMES = FIGURE_NAMES[1:]
 
 CHECKED = ("printed", *NOTEBOOK_NAMES)
-"""What claims are checked by: bare numbers, and each notebook."""
+"""The checks of claims: one for the printed numbers, and one for each notebook."""
 
 
 def nu_label(nu: float) -> str:
     """Write a frequency for a file name: 4 decimals, more only where this one needs them.
 
-    Frequencies have at most 10 decimals (`gearmesh.study.frequencies.read_nu` sees to it), so
+    Frequencies have at most 10 decimals (`gearmesh.study.frequencies.read_nu` ensures it), so
     no two share a label, and a label stays the same whatever other frequencies there are.
     """
     whole, decimals = f"{nu:.10f}".split(".")
@@ -101,7 +101,7 @@ class Places:
 
     @property
     def as_expected(self) -> Path:
-        """A line that is there if all claims have the statuses that the ledger expects."""
+        """A file that exists if all claims have the statuses that the ledger expects."""
         return self.folder / "checks" / "as_expected.txt"
 
     @property
@@ -119,7 +119,7 @@ class Places:
         return self.cases / case_name(variant, nu)
 
     def batch(self, letter: str) -> Path:
-        """Return the file that hands the cases of a letter of Tab. 1 on to the datasets."""
+        """Return the batch file of a letter of Tab. 1, from which the datasets are made."""
         return self.folder / "batches" / f"{letter}.nc"
 
     def figure_files(self, name: str) -> tuple[Path, Path]:

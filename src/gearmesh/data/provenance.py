@@ -1,8 +1,8 @@
-"""Which source files, and which versions of what they use, stand behind a result.
+"""The source files, and the versions of the packages they use, that a result depends on.
 
 `sources` follows the imports of a file through this package, so no list of files has to be kept by
-hand. `code_digest` puts into one digest what a function is made of: the pipeline runs a job again
-when it changes.
+hand. `code_digest` combines all code of a function in one digest; the pipeline runs a job again
+when the digest changes.
 """
 
 import ast
@@ -183,7 +183,8 @@ def _package(file: Path, level: int) -> str:
 def _files(name: str) -> tuple[Path, ...]:
     """Return the file of a module, and the packages that importing it runs.
 
-    The package itself offers names of all its modules: what uses one of them depends on all.
+    The package itself offers names of all its modules, so code that uses one of them depends on
+    all.
     """
     package, *parts = name.split(".")
     if package != PACKAGE.name or parts == ["__version__"]:

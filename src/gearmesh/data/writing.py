@@ -9,7 +9,7 @@ from pathlib import Path
 from gearmesh.errors import InputError
 
 PARTIAL = ".part"
-"""How the names of files end that are being written; all begin with a dot."""
+"""Ending of the names of files that are being written; these names begin with a dot."""
 
 _LITTLE_SPACE = 2**20
 
@@ -23,7 +23,7 @@ def replacing(path: Path) -> Iterator[Path]:
     Raises
     ------
     InputError
-        If the file cannot be written: one line that says why.
+        If the file cannot be written; the message is one line with the reason.
     """
     temporary = path.with_name(f".{path.name}.{os.getpid()}{PARTIAL}")
     try:
@@ -38,7 +38,7 @@ def replacing(path: Path) -> Iterator[Path]:
 
 
 def remove_partial(folder: Path) -> None:
-    """Remove what processes that were killed left half written below a folder."""
+    """Remove the half-written files of killed processes below a folder."""
     for file in folder.rglob(f".*{PARTIAL}"):
         file.unlink(missing_ok=True)
 
@@ -50,7 +50,7 @@ def write_text(path: Path, text: str) -> None:
 
 
 def unwritable(path: Path, error: Exception) -> InputError:
-    """Return the error that says, in one line, why a file cannot be written."""
+    """Return the error with the reason, in one line, why a file cannot be written."""
     why = error.strerror if isinstance(error, OSError) and error.strerror else str(error)
     with contextlib.suppress(OSError):
         if shutil.disk_usage(path.parent).free < _LITTLE_SPACE:

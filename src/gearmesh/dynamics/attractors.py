@@ -1,8 +1,8 @@
-"""Attractors: which motion a run ends on, and which starts lead there.
+"""Attractors: the motions on which runs end, and the initial conditions that lead there.
 
-A run is carried through a transient, many of them side by side. Its end is then compared with the
-orbits that Newton's method finds from there; what is no orbit is told apart by the damping that
-still acts and by its Lyapunov exponents.
+Many runs are integrated through their transients side by side. The end of each run is then compared
+with the orbits that Newton's method finds from there. Motions that are not orbits are classified by
+the damping that still acts and by their Lyapunov exponents.
 """
 
 import math
@@ -34,14 +34,14 @@ PERIODIC, NEUTRAL, QUASI_PERIODIC, CHAOTIC, MOVING, LOST = (
 closed curve; chaos; a motion that still changes after the transient; a run that failed."""
 
 TRANSIENT = 60
-"""Revolutions that are run before an end is looked at."""
+"""Revolutions of a run before its end is classified."""
 
 _MOST_PERIODS = 8
-_NEAR = 0.1  # distance from an orbit, in y_st, at which a run counts as on its way there
+_NEAR = 0.1  # distance from an orbit, in y_st, at which a run may be approaching it
 _SETTLED = 1e-5  # distance at which it has arrived
-_PATIENCE = 10.0  # time constants in which the distance has to fall,
-_APPROACH = 0.5  # to this share: motions may part from an orbit before they approach it
-_MEASURED = 400  # mesh periods over which motion is told apart from motion
+_PATIENCE = 10.0  # time constants of the orbit within which the distance must fall
+_APPROACH = 0.5  # to this share; it may grow first
+_MEASURED = 400  # mesh periods over which a motion that is not an orbit is classified
 _LEAST_GROWTH = 1e-3  # Lyapunov exponent of chaos, in Omega_s
 _LEAST_CHANGE = 1e-6  # of the greatest and least y, in y_st
 _SAME = 1e-6  # of the extrema of one orbit, in y_st
@@ -50,7 +50,7 @@ _SAMPLES = 64  # in a mesh period
 
 @dataclass(frozen=True)
 class Attractor:
-    """Where runs end.
+    """A motion on which runs end.
 
     Attributes
     ----------
@@ -103,7 +103,7 @@ def reached(problems: Sequence[Problem], transient: int = TRANSIENT) -> Reached:
     problems : sequence of Problem
         They differ in initial state and initial phase only.
     transient : int
-        Revolutions before the motion is looked at.
+        Revolutions before the motion is classified.
     """
     runs = [replace(one, revolutions=transient, kept_revolutions=0) for one in problems]
     known: list[Attractor] = []
@@ -129,7 +129,7 @@ def attractor_at(problem: Problem, state: np.ndarray, known: Sequence[Attractor]
     state : array_like, shape (4,)
         y, y', b, b' at `Problem.initial_phase`.
     known : sequence of Attractor
-        Attractors of the same gear pair and frequency that are looked at first.
+        Attractors of the same gear pair and frequency that are tried first.
     """
     for attractor in known:
         if attractor.orbit and _distance(attractor.orbit, problem, state) < _SETTLED:
@@ -147,7 +147,7 @@ def attractor_at(problem: Problem, state: np.ndarray, known: Sequence[Attractor]
 
 
 def _unordered(problem: Problem, state: np.ndarray) -> Attractor:
-    """Tell a motion that is no orbit from others."""
+    """Classify a motion that is not an orbit."""
     spectrum = lyapunov_spectrum(problem, state, _MEASURED)
     if spectrum.exponents[0] > max(_LEAST_GROWTH, 3.0 * spectrum.errors[0]):
         return Attractor(CHAOTIC, spectrum=spectrum)
@@ -199,16 +199,16 @@ def _rank(attractor: Attractor) -> tuple[bool, float, float, str]:
 
 
 class Basins(NamedTuple):
-    """Which attractor each start leads to.
+    """Which attractor each initial condition leads to.
 
     Attributes
     ----------
     attractors : list of Attractor
     labels : ndarray of int, shape (phases, heights, velocities)
-        Index of the attractor that each start leads to.
+        Index of the attractor that each initial condition leads to.
     shares : ndarray, shape (n_attractors, 3)
-        Share of the starts that lead to each attractor (basin stability), and the ends of its
-        95 % Wilson interval.
+        Share of the initial conditions that lead to each attractor (basin stability), and the ends
+        of its 95 % Wilson interval.
     """
 
     attractors: list[Attractor]
@@ -223,17 +223,17 @@ def basins(
     phases: Sequence[float] | None = None,
     transient: int = TRANSIENT,
 ) -> Basins:
-    """Return which attractors starts from a grid of y, y' and phase lead to.
+    """Return the attractors to which the initial conditions of a grid of y, y' and phase lead.
 
     Parameters
     ----------
     problem : Problem
     y, v : array_like, shape (heights,) and (velocities,)
-        Relative motion and its rate at the start; the bodies rest where F_st holds them.
+        Initial relative motion and its rate; the bodies are in static equilibrium under F_st.
     phases : sequence of float, optional
-        Starting phases; that of `problem` if not given.
+        Initial phases; that of `problem` if not given.
     transient : int
-        Revolutions before the motion is looked at.
+        Revolutions before the motion is classified.
     """
     phases = [problem.initial_phase] if phases is None else list(phases)
     rest = -2.0 / problem.bearing_stiffness

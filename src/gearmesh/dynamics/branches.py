@@ -1,4 +1,4 @@
-"""Branches of orbits: how a periodic motion changes with a parameter, where it begins and ends."""
+"""Branches of orbits: how a periodic motion changes with a parameter, and where it ends."""
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
@@ -32,8 +32,8 @@ class Branch:
     special : list of SpecialPoint
         Special points in their order along the branch.
     ends : tuple of two str
-        Why the branch stops at its first and at its last point: `LIMIT`, `CLOSED`, `HALVED`,
-        `FAR`, or what keeps the corrector from going on.
+        Why the branch ends at its first and at its last point: `LIMIT`, `CLOSED`, `HALVED`, `FAR`,
+        or the reason why the corrector failed.
     """
 
     parameter: str

@@ -72,7 +72,7 @@ class Curve:
         Mesh phase at which the state is taken. The state has a kink along the curve where it
         passes an end of a regime at this very phase, because damping jumps there.
     condition : callable, optional
-        With two parameters: what is 0 for the orbits of the curve.
+        Only with two parameters: a function that is 0 for the orbits of the curve.
     """
 
     family: Family
@@ -183,9 +183,9 @@ class Curve:
         return defect if self.condition is None else np.append(defect, self.condition(orbit))
 
     def _gradients(self, place: np.ndarray) -> np.ndarray:
-        """Return the gradients of the defect by differences, but for those of P^n in the state.
+        """Return the gradients of the defect by differences, except for those of P^n in the state.
 
-        They decide the direction of Newton's steps and not where they end.
+        They affect the direction of Newton's steps, but not the point to which the steps converge.
         """
         rows = len(place) - 1
         gradients = np.zeros((rows, len(place)))
@@ -207,7 +207,8 @@ def at_phase(orbit: Orbit, phase: float) -> Orbit:
 def clear_phase(orbit: Orbit) -> float:
     """Return a mesh phase at which the orbit is far from the ends of its regimes.
 
-    It is the phase of the orbit's state as long as this is half as far from them as it can be.
+    The phase of the orbit's state is kept if it is at least half as far from them as the best
+    phase.
     """
     course = orbit.time_course(_PLACES)
     away = np.minimum(np.abs(course.y), np.abs(course.y + orbit.problem.backlash))

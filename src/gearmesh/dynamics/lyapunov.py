@@ -46,7 +46,7 @@ def lyapunov_spectrum(
     periods : int
         Mesh periods over which growth is measured, at least 8.
     transient : int
-        Mesh periods before, in which the directions of growth turn to where they belong.
+        Mesh periods before the measurement, in which the directions of growth align.
 
     Raises
     ------

@@ -31,18 +31,18 @@ LARGEST_RESIDUAL = 1e-11
 """Largest |P^n(x) - x| of an orbit, in y_st and y_st Omega_s."""
 
 FARTHEST = 100.0
-"""Size of y, in y_st, beyond which orbits are not looked for."""
+"""Size of y, in y_st, beyond which no orbits are searched for."""
 
 _MOST_CORRECTIONS = 40
 _SHORTEST_CORRECTION = 1.0 / 1024.0
-# States this close are the same: a shorter period is looked for at this distance.
+# States closer than this count as the same, so an orbit that returns so early has a shorter period.
 _SAME = 1e-8
-# A multiplier of a motion without damping outside the unit circle by more than this is unstable.
+# An orbit without damping is unstable if a multiplier exceeds 1 in size by more than this.
 _LEAST_GROWTH = 1e-7
 
 
 class Certificate(NamedTuple):
-    """What the numbers of an orbit can be trusted for.
+    """How far the numbers of an orbit can be trusted.
 
     Attributes
     ----------
@@ -52,8 +52,8 @@ class Certificate(NamedTuple):
         Least distance in y_st from an extremum of y to the ends of its regime. It is negative if
         an event was missed, and near 0 if the orbit grazes.
     least_force : float
-        Least force in F_st between flanks that touch; infinity if none do. Where it is negative
-        the damping law pulls.
+        Least force in F_st between flanks that touch; infinity if none do. If it is negative, the
+        damping law pulls the flanks together.
     multiplier_error : float
         Estimated error of the multipliers: their change with half the step and one more
         correction of the state, or the error of their product by Liouville's formula.
@@ -130,7 +130,7 @@ class Orbit:
     def neutral(self) -> bool:
         """Whether no damping of the mesh acts along the orbit and nothing grows.
 
-        Its multipliers then stand on the unit circle, but for what the bearings take.
+        Its multipliers are then on the unit circle, except for the effect of the bearings.
         """
         return self.passage.damping == 0.0 and not self._grows(_LEAST_GROWTH)
 
@@ -218,7 +218,7 @@ def find_orbit(problem: Problem, periods: int = 1, start: np.ndarray | None = No
     Raises
     ------
     NoOrbit
-        If no start leads to an orbit.
+        If no initial state leads to an orbit.
     """
     if not is_reducible(problem):
         raise NoOrbit("orbits: run-out, profile deviation and Fourier stiffness are not covered")
@@ -264,7 +264,7 @@ def correct(problem: Problem, state: np.ndarray, periods: int = 1) -> Orbit:
 
 
 def _improve(orbit: Orbit) -> Orbit | None:
-    """Return the orbit after one damped correction, or None if none makes it better."""
+    """Return the orbit after one damped correction, or None if no correction improves it."""
     correction = newton_correction(orbit.passage, orbit.state)
     share = 1.0
     while share >= _SHORTEST_CORRECTION:

@@ -1,7 +1,8 @@
 """Search along one axis by batches: where something changes, jumps or peaks.
 
-Every function takes a callable that evaluates a whole batch of places at once, because a batch of
-runs costs little more than one: the interval is cut into `PARTS` pieces each time, not into two.
+Every function takes a callable that evaluates a whole batch of points at once, because a batch of
+runs costs little more than one run. Each refinement therefore cuts the interval into `PARTS`
+pieces, not into two.
 """
 
 from collections.abc import Callable
@@ -9,10 +10,10 @@ from collections.abc import Callable
 import numpy as np
 
 PARTS = 9
-"""Pieces of an interval: eight new places inside, one for each lane of the solver."""
+"""Pieces of an interval: eight new points inside, one for each lane of the solver."""
 
 Batch = Callable[[np.ndarray], np.ndarray]
-"""Places, shape (n,), to values, shape (n,)."""
+"""Function from points, shape (n,), to values, shape (n,)."""
 
 
 def _cut(low: float, high: float) -> np.ndarray:
@@ -27,7 +28,7 @@ def refine_change(holds: Batch, low: float, high: float, width: float) -> tuple[
     Parameters
     ----------
     holds : callable
-        Places to booleans; differs between `low` and `high`.
+        Function from points to booleans; the value at `low` differs from that at `high`.
     low, high : float
         Ends of the interval.
     width : float
@@ -37,7 +38,8 @@ def refine_change(holds: Batch, low: float, high: float, width: float) -> tuple[
     -------
     tuple of float
         (low, high), no wider than `width` unless floating point ends first; the condition
-        differs between the two. Of several changes the first from `low` is followed.
+        differs between the two. If there are several changes, the one nearest to `low` is followed
+        at each refinement.
 
     Raises
     ------
@@ -58,12 +60,12 @@ def refine_change(holds: Batch, low: float, high: float, width: float) -> tuple[
 
 
 def refine_step(values: Batch, low: float, high: float, width: float) -> tuple[float, float, float]:
-    """Follow the steepest piece of a course down to a width.
+    """Follow the steepest piece of a curve down to a width.
 
     Parameters
     ----------
     values : callable
-        Places to values.
+        Function from points to values.
     low, high : float
         Ends of the interval.
     width : float
@@ -72,8 +74,8 @@ def refine_step(values: Batch, low: float, high: float, width: float) -> tuple[f
     Returns
     -------
     tuple of float
-        (low, high, step): the piece, and how much the value changes over it. Over a jump the step
-        stays as the piece shrinks; over a slope, however steep, it shrinks with it.
+        (low, high, step): the piece, and how much the value changes over it. At a jump the step
+        stays the same while the piece shrinks; on a slope, however steep, the step shrinks too.
     """
     at_low, at_high = values(np.array([low, high]))
     while high - low > width:
@@ -91,12 +93,12 @@ def refine_step(values: Batch, low: float, high: float, width: float) -> tuple[f
 
 
 def refine_peak(values: Batch, low: float, high: float, width: float) -> tuple[float, float]:
-    """Locate the greatest value of a course that has one peak in the interval.
+    """Locate the greatest value of a curve that has one peak in the interval.
 
     Returns
     -------
     tuple of float
-        (place, value) of the greatest value met, the place to half of `width`.
+        (point, value) of the greatest value found; the point is accurate to half of `width`.
     """
     while True:
         places = _cut(low, high)

@@ -1,6 +1,6 @@
-"""Response curves: what is measured on the runs of one variant against the mesh frequency ν_s.
+"""Response curves: measures of the runs of one variant against the mesh frequency ν_s.
 
-A `ResponseCurve` integrates runs where they are asked for and remembers them. The functions here
+A `ResponseCurve` integrates runs on demand and keeps their responses. The functions here
 scan it and locate its features by refinement: jumps, peaks, onsets, crossings. Lengths are in
 static deflections y_st.
 """
@@ -19,16 +19,16 @@ SCAN = 0.0025
 """Spacing in ν_s of a scan. Narrower features may be overlooked."""
 
 WIDTH = 1e-4
-"""Interval of ν_s to which features are narrowed. An answer is good to half of it."""
+"""Interval of ν_s to which features are narrowed. A result is accurate to half of it."""
 
 JUMP_WIDTH = 5e-4
-"""Interval of ν_s that must hold a third of a step of the scan if it is to count as a jump."""
+"""A step of the scan counts as a jump if an interval of ν_s this wide holds a third of it."""
 
 SMALLEST_JUMP = 0.2
 """Least step of y_max that counts as a jump: a twentieth of the height of Fig. 2."""
 
 VISIBLE_SPREAD = 0.02
-"""Spread of extrema from which one curve looks like several: the width of a line in Fig. 3."""
+"""Spread of extrema above which one curve is seen as several: the width of a line in Fig. 3."""
 
 Measure = Callable[[Response], float]
 
@@ -51,7 +51,7 @@ class ResponseCurve:
     Parameters
     ----------
     state : callable
-        ν_s to the statement of its run.
+        Function from ν_s to the problem of its run.
     tolerance : float
         Local error tolerance of the runs.
     name : str
@@ -87,8 +87,8 @@ class ResponseCurve:
     def of(self, measure: Measure) -> Batch:
         """Return a function from mesh frequencies to values, shape (n,).
 
-        The function raises FailedRun, with the name of the run, where one could not be integrated:
-        a feature is never located beside a gap.
+        The function raises FailedRun, with the name of the run, if a run could not be integrated. A
+        feature is therefore never located next to a missing run.
         """
 
         def values(nu: np.ndarray) -> np.ndarray:
@@ -148,7 +148,7 @@ def extremum_spread(kind: int) -> Measure:
 def scan(low: float, high: float) -> np.ndarray:
     """Return the two ends and the multiples of `SCAN` between them; nothing if the ends cross.
 
-    All scans share their places, so a run of one serves the others.
+    All scans use the same frequencies, so a run of one scan serves the others.
     """
     if high < low:
         return np.empty(0)
@@ -159,10 +159,11 @@ def scan(low: float, high: float) -> np.ndarray:
 def jumps(curve: ResponseCurve, low: float, high: float) -> list[Jump]:
     """Find the jumps of y_max: steps that do not shrink as the interval around them does.
 
-    After a finite number of periods no jump is sharp: in the fifth revolution it still takes 1e-4
-    to 3e-4 in ν_s, because motions that start beside the edge between two of them take long to
-    leave it. A step of the scan therefore counts as a jump if an interval of `JUMP_WIDTH` at the
-    most still holds a third of it; of a straight slope it would hold a fifth at the most.
+    After a finite number of periods no jump is sharp: in the fifth revolution it is still spread
+    over 1e-4 to 3e-4 in ν_s, because a run with an initial condition near the boundary between two
+    motions takes long to leave it. A step of the scan therefore counts as a jump if an interval of
+    at most `JUMP_WIDTH` still holds a third of it. Of a straight slope such an interval would hold
+    at most a fifth.
     """
     places = curve.scan(low, high)
     height = curve.of(y_max)
@@ -177,14 +178,14 @@ def jumps(curve: ResponseCurve, low: float, high: float) -> list[Jump]:
 
 
 def great_rises(found: Iterable[Jump], low: float, high: float) -> list[float]:
-    """Return where y_max jumps up between two frequencies, by half the greatest rise or more."""
+    """Return the ν_s at which y_max jumps up by at least half the greatest rise in an interval."""
     rises = [jump for jump in found if low <= jump.nu <= high and jump.step > 0]
     enough = max((jump.step for jump in rises), default=0.0) / 2
     return [jump.nu for jump in rises if jump.step >= enough]
 
 
 def largest_step(curve: ResponseCurve, low: float, high: float) -> Jump:
-    """Measure continuity: the greatest step of y_max that is left over an interval of `WIDTH`."""
+    """Return the greatest step of y_max that remains over `WIDTH`, as a measure of continuity."""
     places = curve.scan(low, high)
     height = curve.of(y_max)
     steepest = np.argsort(np.abs(np.diff(height(places))))[-curve.steepest :]
@@ -194,7 +195,7 @@ def largest_step(curve: ResponseCurve, low: float, high: float) -> Jump:
 
 
 def loop_end(curve: ResponseCurve, low: float, high: float) -> float | None:
-    """Find where the loops end: the last place where four turning points a period become two."""
+    """Find the end of the loops: the last ν_s at which four turning points a period become two."""
     places = curve.scan(low, high)
     turning = curve.of(turning_points)
 
@@ -206,7 +207,7 @@ def loop_end(curve: ResponseCurve, low: float, high: float) -> float | None:
 
 
 def onset(curve: ResponseCurve, spread: Batch, low: float, high: float) -> float | None:
-    """Find from where on a spread of the curve is visible up to `high`."""
+    """Find the ν_s above which the spread of the curve is visible throughout, up to `high`."""
     places = curve.scan(low, high)
 
     def is_split(nu: np.ndarray) -> np.ndarray:
@@ -236,7 +237,7 @@ def exceedance(
 
 
 def _changes(holds: Batch, places: np.ndarray, left: Iterable[int], width: float) -> list[float]:
-    """Refine the changes between the scanned places `left` and their right neighbours."""
+    """Refine the changes between the frequencies `places[left]` and their right neighbours."""
     return [float(np.mean(refine_change(holds, places[i], places[i + 1], width))) for i in left]
 
 

@@ -38,7 +38,7 @@ class SpecialCurve:
     cusps : list of SpecialPoint
         Of a curve of folds: where two folds meet and vanish.
     ends : tuple of two str
-        Why the curve stops at its first and at its last point, see `gearmesh.dynamics.walks`.
+        Why the curve ends at its first and at its last point, see `gearmesh.dynamics.walks`.
     """
 
     kind: str
@@ -62,7 +62,8 @@ def follow_special(
     Parameters
     ----------
     point : SpecialPoint
-        Of any kind but ``"branch_point"``, which one more parameter takes away.
+        Of any kind except ``"branch_point"``, which in general vanishes when a second parameter
+        changes.
     parameters : tuple of two str
         Fields of `Problem`, or names of what `family` varies.
     limits : tuple of two tuples of float

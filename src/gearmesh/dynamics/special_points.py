@@ -1,8 +1,8 @@
-"""Special points of a branch: test functions that pass 0 there, and where they do.
+"""Special points of a branch, located as the zeros of test functions.
 
-Between two neighbouring points of a branch every test function is known with its slope. Where it
-changes its sign, a root is located on the branch itself. Where its tangents at both ends leave
-room for two roots in between, the piece of the branch is halved until they do not.
+Every test function is known, with its slope, at neighbouring points of a branch. If its sign
+changes between two of them, a root is located on the branch itself. If its tangents at both ends
+allow two roots in between, the piece of the branch is halved until they do not.
 """
 
 from collections.abc import Callable, Iterator
@@ -24,7 +24,7 @@ Test = tuple[str, Callable[[Point], float]]
 """A kind, and a function of the points of a branch that passes 0 at a special point."""
 
 _OFFSET = 1e-5
-_NARROWEST = 1e-6  # piece of a branch in which two roots of one test are not told apart
+_NARROWEST = 1e-6  # piece of a branch; roots of one test closer than this are not separated
 _NARROWEST_PIECE = 1e-11  # between two grazings, in which multipliers are tested
 _ROOT_WIDTH = 1e-13
 _LARGEST_VALUE = 1e-7  # of a test function at its root: more is a jump
@@ -137,7 +137,7 @@ def _locate(curve: Curve, left: Point, right: Point, test: Callable[[Point], flo
 def _confirmed(
     kind: str, test: Callable[[Point], float], left: Point, point: Point, right: Point
 ) -> bool:
-    """Return whether a test function is continuous at its root, and what it shows is there."""
+    """Return whether the root of a test function is a special point and not a jump."""
     scale = max(1.0, abs(test(left)), abs(test(right)))
     if not abs(test(point)) < _LARGEST_VALUE * scale:
         return False
@@ -151,7 +151,7 @@ def _confirmed(
 
 
 def _has_pair_on_the_unit_circle(orbit: Orbit) -> bool:
-    """Return whether it is a complex pair, and not two real multipliers, whose product is 1."""
+    """Return whether the multipliers with the product 1 are a complex pair, not two real ones."""
     products = [(abs(a * b - 1.0), a) for a, b in combinations(orbit.multipliers, 2)]
     return bool(abs(min(products, key=lambda item: item[0])[1].imag) > 1e-6)
 
@@ -186,7 +186,8 @@ def _event_tests(point: Point) -> list[Test]:
 def torus_test(orbit: Orbit) -> float:
     """Return the product of all mu_i mu_k - 1, which is 0 where a pair is on the unit circle.
 
-    Without damping in the mesh a pair may stand there all along the branch: no number then.
+    Without damping in the mesh a pair may be there all along the branch; the result is then
+    not-a-number.
     """
     if orbit.passage.damping == 0.0:
         return float("nan")

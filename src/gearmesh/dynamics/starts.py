@@ -1,4 +1,4 @@
-"""States from which orbits are searched."""
+"""Initial states for the search for orbits."""
 
 from collections.abc import Iterator
 from dataclasses import replace
@@ -12,7 +12,7 @@ from gearmesh.solvers.reduced.period_map import segments_of
 from gearmesh.solvers.simulation import simulate
 
 _TRANSIENT = 40
-"""Revolutions after which the end of a run serves as a start."""
+"""Revolutions after which the end of a run serves as an initial state."""
 
 _HEIGHTS = (0.0, 1.0, 2.0, 3.0)
 _VELOCITIES = (-2.0, -0.7, 0.7, 2.0)
@@ -21,7 +21,7 @@ _VELOCITIES = (-2.0, -0.7, 0.7, 2.0)
 def starts(problem: Problem) -> Iterator[np.ndarray]:
     """Yield states (y, y', b, b') near which orbits may lie, the most likely first.
 
-    They are the periodic motion in contact without damping of the mesh, the end of a long run
+    They are the periodic motion that never loses contact (`linear_orbit`), the end of a long run
     from rest, the ends of long runs from a grid of y and v, and the grid itself.
     """
     yield linear_orbit(problem)
@@ -43,8 +43,8 @@ def coordinates(state: State) -> np.ndarray:
 def linear_orbit(problem: Problem) -> np.ndarray:
     """Return the state (y, y', b, b') of the periodic motion that never loses contact.
 
-    The material's linear damping acts; the equations are linear then, and a matrix exponential
-    for each segment of the mesh period solves them.
+    Only the linear damping of the material acts. The equations are then linear, and a matrix
+    exponential for each segment of the mesh period solves them.
     """
     two_mu = 2.0 / problem.body_mass
     support = problem.bearing_stiffness / problem.body_mass

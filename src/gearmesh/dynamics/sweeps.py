@@ -1,4 +1,4 @@
-"""Sweeps: chains of runs, each of which goes on from the end of the run before it."""
+"""Sweeps: chains of runs, each of which starts from the end of the run before it."""
 
 from collections.abc import Sequence
 from dataclasses import replace
@@ -21,7 +21,7 @@ def run_chains(
     ----------
     chains : sequence of sequences of Problem
         The first run of each chain starts from its own initial condition. Each other run starts
-        from the end of the run before it, or, where that failed, from its own.
+        from the end of the run before it, or from its own initial condition if that run failed.
     tolerance, samples_per_period, estimate_errors
         As for `gearmesh.solvers.simulation.simulate`.
 

@@ -1,4 +1,4 @@
-"""Walks along a curve of orbits, in both directions, and why they end."""
+"""Walks along a curve of orbits in both directions, and the reasons why they end."""
 
 from dataclasses import dataclass, replace
 from typing import NamedTuple
@@ -22,19 +22,19 @@ It grows in proportion to motions of more than `_LARGE`.
 """
 
 MOST_POINTS = 4000
-"""Points after which a branch is given up."""
+"""Greatest number of points of a walk."""
 
 LIMIT, CLOSED, HALVED, FAR = "limit", "closed", "half the period", "far"
-"""Ends of a branch: at a limit of the parameter, at its own start, at a flip of an orbit of half
-the period, where the orbits of the branch come again one half of their period later, and at
-motions larger than `gearmesh.dynamics.orbits.FARTHEST`."""
+"""Ends of a branch: at a limit of the parameter; at its own first point; at a flip of an orbit of
+half the period, behind which the same orbits follow half a period later; at motions larger than
+`gearmesh.dynamics.orbits.FARTHEST`."""
 
 _FIRST_STEP = 0.25  # of the longest
 _GROWTH = 1.4
 _LARGE = 5.0
 _AT_LIMIT = 1e-9  # share of the range of the parameter
 _SAME = 1e-7  # distance between two states that are the same
-_REACH = 0.3  # length of the branch of half the period on which its flip is looked for
+_REACH = 0.3  # length of the branch of half the period on which its flip is searched for
 
 
 @dataclass(frozen=True)
@@ -70,7 +70,7 @@ class Walk(NamedTuple):
 
 
 def walk(curve: Curve, start: Point, limits: Limits, longest: float) -> tuple[Walk, Walk]:
-    """Walk from `start` against and along its tangent; of a closed curve both walks are one."""
+    """Walk from `start` against and along its tangent; on a closed curve both are the same walk."""
     ahead = _walk(Piece(curve, [start]), limits, longest)
     if ahead.reason == CLOSED:
         return ahead, ahead
@@ -90,7 +90,7 @@ def points_of(pieces: list[Piece]) -> list[Point]:
 
 
 def _walk(piece: Piece, limits: Limits, longest: float) -> Walk:
-    """Follow the branch from the only point of `piece` on."""
+    """Follow the branch from the only point of `piece`."""
     start, pieces = piece.points[0], [piece]
     length = _FIRST_STEP * longest
     for _ in range(MOST_POINTS):
@@ -132,7 +132,7 @@ def _halves(curve: Curve) -> bool:
 
 
 def _half_way(point: Point) -> np.ndarray:
-    """Return how far an orbit is from its start after half of its period."""
+    """Return the distance of an orbit from its initial state after half of its period."""
     orbit = point.orbit
     return passage(orbit.problem, orbit.state, orbit.periods // 2).end - orbit.state
 
@@ -164,7 +164,7 @@ def _between(curve: Curve, point: Point, following: Point, value: float, i: int 
 
 
 def _is_back(curve: Curve, point: Point, following: Point, start: Point) -> bool:
-    """Return whether a closed branch passes its start between two points."""
+    """Return whether a closed branch passes its first point between two points."""
     rises = following.tangent[4] * start.tangent[4] > 0.0
     if (
         point is start

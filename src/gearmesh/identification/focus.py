@@ -15,7 +15,7 @@ BEST = 64
 
 
 def best(held: np.ndarray, fit: np.ndarray, count: int = BEST) -> np.ndarray:
-    """Return the indices of the samples that meet most claims; ties go to the best fit."""
+    """Return the indices of the samples that meet most claims, in ties the best fits first."""
     return np.lexsort((-fit, -held))[:count]
 
 

@@ -37,7 +37,7 @@ def draw_supports(samples: Samples, ledger: Sequence[Claim]) -> Figure:
     _scatter(right, samples, "damping_length", "backlash", failing)
     mass = np.array(left.get_xlim())
     for nu, name in ((FIRST, "0.6"), (LAST, "1.2")):
-        # A body on its bearings has its natural frequency at ν_s = √(c_b/C_s · m_red/m).
+        # The natural frequency of a body on its bearings is at ν_s = √(c_b/C_s · m_red/m).
         left.plot(mass, nu**2 * mass, color=palette.RED, lw=0.8)
         left.annotate(
             name,

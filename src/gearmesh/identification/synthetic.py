@@ -27,8 +27,8 @@ def paper(truth: Mapping[str, float], stated: Sequence[Statement]) -> dict[str, 
     Returns
     -------
     dict
-        Column -> rounded number as a statement; or whether what the real paper says of it holds.
-        Numbers that do not exist are False, as what is said of them cannot hold.
+        Column -> rounded number as a statement; or whether the statement of the real paper about it
+        holds. Numbers that do not exist are False, because no statement about them can hold.
     """
     written: dict[str, Statement | bool] = {}
     for statement in stated:

@@ -11,9 +11,9 @@ from gearmesh.identification.layout import IDENTIFIED
 from gearmesh.study import yamlfile
 
 HEADER = """\
-# What the claims of the paper say about what it does not print; docs/identification.md tells how
-# it was found. Made by `make identify` from config/identify.yaml and config/claims.yaml: do not
-# edit. Shares are of the plausible space, regions have probability 0.95.
+# The parameters that the paper does not print, inferred from its claims by the method of
+# docs/identification.md. Made by `make identify` from config/identify.yaml and config/claims.yaml:
+# do not edit. Shares are of the plausible space, regions have probability 0.95.
 """
 
 _SHORT = 90

@@ -83,7 +83,7 @@ def statements(ledger: Iterable[Claim], wordings: Sequence[Wording] = ()) -> lis
                 high = np.inf if target.at_most is None else target.at_most
                 found.append(Statement(claim.id, quantity, low, high, low, high))
             else:
-                # A value on the limit must not fail by the last bit.
+                # A value at the limit must not fail because of rounding.
                 assert tolerance is not None  # checked by Claim
                 reach = tolerance * (1.0 + 1e-9)
                 core = min(sure.pop((claim.id, quantity), tolerance), reach)

@@ -1,5 +1,5 @@
-"""The public functions: a pair, a variant and ν_s in, xarray datasets with units out.
+"""The public functions: they take a pair, a variant and ν_s, and return datasets with units.
 
-They are what ``import gearmesh as gm`` offers. They may import the model, the solvers, the
-dynamics, the study and the data, and nothing that needs Snakemake or matplotlib.
+``import gearmesh as gm`` provides them. They may import the model, the solvers, the dynamics, the
+study and the data, but nothing that needs Snakemake or matplotlib.
 """

@@ -80,7 +80,7 @@ class Orbit:
 
     @property
     def residual(self) -> float:
-        """Distance by which the orbit misses its start after one period, in y_st."""
+        """Distance between the states at the two ends of one period, in y_st."""
         return self.found.residual
 
     def to_dataset(self, samples_per_period: int = 256) -> xr.Dataset:
@@ -91,7 +91,7 @@ class Orbit:
         xarray.Dataset
             `y`, `v`, `a` and `regime` over ``time``; `strobe_y` and `strobe_v` (y and dy/dτ_s at
             the initial phase), `y_max`, `y_min`, `stable`, `neutral`, `residual`; `multipliers`.
-            Lengths are in mm, and with ``_rel`` behind the name in static deflections.
+            Lengths are in mm and, with ``_rel`` appended to the name, in static deflections.
         """
         course = self.found.time_course(samples_per_period)
         lengths: dict[str, tuple[tuple[str, ...], Any, str]] = {
@@ -190,7 +190,7 @@ class Branch:
 
     @property
     def ends(self) -> tuple[str, str]:
-        """Why the branch stops at its first and at its last point."""
+        """Why the branch ends at its first and at its last point."""
         return self.found.ends
 
     @cached_property
@@ -254,7 +254,7 @@ def find_orbit(
         Its least period, in mesh periods.
     start : tuple or Orbit, optional
         (y, dy/dτ_s) at the initial phase near the orbit, each with its unit or as a number of
-        static deflections; or an orbit nearby. By default several starts are tried.
+        static deflections; or an orbit nearby. By default several initial conditions are tried.
 
     Returns
     -------
@@ -263,7 +263,7 @@ def find_orbit(
     Raises
     ------
     NoOrbit
-        If none is found; it says why.
+        If none is found; the message gives the reason.
     InputError
         One line, if an argument is wrong.
 
@@ -308,7 +308,7 @@ def follow(orbit: Orbit, parameter: str, limits: Limits) -> Branch:
     Raises
     ------
     NoOrbit
-        If the branch cannot be followed; it says why.
+        If the branch cannot be followed; the message gives the reason.
     InputError
         One line, if an argument is wrong.
     """
@@ -363,7 +363,7 @@ def follow_special(
     Raises
     ------
     NoOrbit
-        If the curve cannot be followed; it says why.
+        If the curve cannot be followed; the message gives the reason.
     """
     orbit = point.orbit
     family, values = _family(orbit, parameters)

@@ -41,7 +41,7 @@ def simulate(
     Parameters
     ----------
     pair : Pair
-        The gear pair; `gearmesh.reproduction` returns the paper's.
+        The gear pair; `gearmesh.paper` returns the paper's.
     variant : str or Variant
         Which damping terms act where, as ``"c-lubricant"`` (``gearmesh variants`` lists all).
     nu : float
@@ -51,8 +51,8 @@ def simulate(
         in a mesh period; by default those of the pair (5, 1 and 256 in the paper).
     start : tuple or Dataset, optional
         Initial condition: (y, dy/dτ_s), each with its unit or as a number of static deflections;
-        or an earlier run, from whose end this run goes on as if it had not been interrupted (bit
-        for bit if all of its revolutions are kept). By default static equilibrium.
+        or an earlier run, which this run continues as if there had been no interruption (bit for
+        bit if all of its revolutions are kept). By default static equilibrium.
     tolerance : float, optional
         Local error tolerance, relative to y_st and y_st Ω_s; by default that of the pair (1e-10).
 
@@ -60,8 +60,8 @@ def simulate(
     -------
     xarray.Dataset
         The variables of a case file. The time course has the coordinate ``time`` (s); lengths are
-        in mm, and with ``_rel`` behind the name in static deflections. `status` is 0 (ok), or says
-        why the run could not be integrated.
+        in mm and, with ``_rel`` appended to the name, in static deflections. `status` is 0 (ok), or
+        the reason why the run could not be integrated.
 
     Raises
     ------
@@ -125,7 +125,7 @@ def sweep(
     Returns
     -------
     xarray.Dataset
-        The scalars of a case file over (variant, nu, *parameters*), extrema over one axis more
+        The scalars of a case file over (variant, nu, *parameters*), extrema over one more axis
         (``extremum``, filled with not-a-number) and stroboscopic points over ``boundary``.
 
     Raises

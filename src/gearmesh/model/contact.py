@@ -1,7 +1,7 @@
 """Contact of the flanks: the regimes of the mesh and its elastic force.
 
-The functions take floats and arrays alike, and compile with numba, so that every solver uses them
-as they stand here.
+The functions take floats or arrays and compile with numba, so that every solver uses them
+unchanged.
 """
 
 from typing import Any
@@ -29,5 +29,5 @@ def elastic_force(y: Number, c: Number, regime: Number, backlash: Number) -> Num
 
 
 def dynamic_force(y: Number, c: Number) -> Number:
-    """Return F_dyn of eq. (2); unlike the elastic force it knows no contact loss."""
+    """Return F_dyn of eq. (2); unlike the elastic force it does not vanish in contact loss."""
     return c * y

@@ -34,16 +34,17 @@ Without run-out both signs are +1 (`follows_run_out`).
 Rules with run-out
 ------------------
 With run-out both signs of eq. (6) act: F_T = -A sign(z_3' - z_2') with A = f_T E gamma times the
-first sign, that of the bracket. The paper does not say what holds where an argument is 0. These
-rules do, and they decide results: with other ones y_max of a run may change in its second digit.
+first sign, that of the bracket. The paper does not state what holds if an argument is 0. The
+following rules define it. They affect results: with other rules y_max of a run may change in its
+second digit.
 
 1. Opposed sliding sticks. Where A > 0 friction opposes the sliding. At z_3' = z_2' the flanks then
    stick (Filippov) while the force that holds them (`holding_force`) is within <-A; A>, and F_T
    takes that value. They slide again as soon as it takes more.
 2. Driven sliding does not stick. Where A < 0 eq. (6) drives the sliding, and nothing can hold it.
    From z_3' = z_2' the flanks go where the bearings pull them.
-3. Double contact neither holds nor drives, nor does contact loss. There A = 0; in double contact
-   because the forces of both pairs cancel. From z_3' = z_2' the flanks go where the bearings pull
+3. In double contact and in contact loss friction neither holds nor drives, because A = 0. In double
+   contact the forces of both pairs cancel. From z_3' = z_2' the flanks go where the bearings pull
    them, and the second sign follows.
 4. From exact rest, where the bearings do not pull, the second sign is +1. This is how a run starts
    in double contact, where the sign acts on the moments alone.

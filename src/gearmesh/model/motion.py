@@ -5,8 +5,8 @@ displacements of their bodies along the mesh line and across it. The rotations a
 lengths R_b phi. Wheels, bodies and bearings of the pair are equal; a wheel alone has the inertia
 2 m_red on its base circle.
 
-This is the one statement of the model. `accelerations` takes floats, and as well truncated Taylor
-series of time, which is how tests hold the fast recurrences of the solvers against it.
+The model is stated here only. `accelerations` takes floats or truncated Taylor series of time; with
+series, tests compare the fast recurrences of the solvers with it.
 """
 
 import math
@@ -263,8 +263,8 @@ def state_at(problem: Problem, y: float = 1.0, v: float = 0.0) -> State:
     y : float
         Relative motion, in y_st; 1 is static equilibrium.
     v : float
-        Rate of R_b (phi_3 + phi_2), in y_st Omega_s. This is y' but for what run-out and profile
-        deviation add to it.
+        Rate of R_b (phi_3 + phi_2), in y_st Omega_s. This is y' without the parts of run-out and
+        profile deviation.
     """
     q, rates = static_equilibrium(problem, y)
     rates[[ROTATION_3, ROTATION_2]] = 0.5 * v

@@ -51,9 +51,9 @@ class Problem:
         Mesh phase at the start of the run, in mesh periods.
     revolutions, kept_revolutions : int
         Revolutions of the wheels that are run, and how many of the last are measured; 0 measures
-        nothing, as in a run that only carries a transient off.
+        nothing, for a run that only lets a transient die out.
     initial_state : State, optional
-        Where the run starts, in place of rest in static equilibrium.
+        Initial condition, if it is not rest in static equilibrium.
     """
 
     nu: float
@@ -107,22 +107,22 @@ class Problem:
 
     @property
     def kept_periods(self) -> int:
-        """Mesh periods that are measured, the last of the run."""
+        """Mesh periods that are measured, at the end of the run."""
         return self.kept_revolutions * self.teeth
 
     @property
     def has_run_out(self) -> bool:
-        """Whether a wheel runs out of true."""
+        """Whether a wheel is eccentric."""
         return self.eccentricity_3 != 0.0 or self.eccentricity_2 != 0.0
 
 
 @dataclass(frozen=True, slots=True)
 class State:
-    """Where a run stands at a boundary of its mesh periods.
+    """State of a run at a boundary between mesh periods.
 
     The end of a run (`gearmesh.solvers.response.Response.final_state`) holds all that the next run
-    needs to go on from there bit for bit. `gearmesh.model.motion.state_at` makes a state from y and
-    its rate.
+    needs to continue it bit for bit. `gearmesh.model.motion.state_at` makes a state from y and its
+    rate.
 
     Attributes
     ----------
@@ -131,13 +131,15 @@ class State:
     b, b_rate : float
         Distance of the bodies along the mesh line, y_3 - y_2, and its rate.
     coordinates : tuple of 12 float, optional
-        The six coordinates and their rates. The reduced system does not know them; a run in the
-        six coordinates then shares y and b evenly between the wheels, with nothing displaced
-        across the mesh line.
+        The six coordinates and their rates. A state of the reduced system does not have them. A run
+        in the six coordinates that starts from it shares y and b evenly between the wheels, without
+        a displacement across the mesh line.
     periods : int
-        Mesh periods since t = 0: they tell the angle of the shafts, and so of the run-out.
+        Mesh periods since t = 0. They determine the angle of the shafts, and with it that of the
+        run-out.
     branches : Branches, optional
-        The branches of the laws that jump. Without them they are found from the numbers above.
+        The branches of the laws that jump. If they are missing, they are found from the numbers
+        above.
     """
 
     y: float
@@ -158,15 +160,15 @@ class State:
 
 @dataclass(frozen=True, slots=True)
 class Branches:
-    """The branches of the laws that jump, as a run has left them.
+    """The branches of the laws that jump, at the end of a run.
 
-    Rounding may leave a quantity on the wrong side of the place where a law jumps. Going on bit for
-    bit takes these discrete facts, not numbers close to 0.
+    Rounding may leave a quantity on the wrong side of the point where a law jumps. To continue a
+    run bit for bit takes these discrete facts; numbers close to 0 are not enough.
 
     Attributes
     ----------
     problem : Problem
-        The run that has left them, without its initial state. They hold for its laws only.
+        The run that ended with them, without its initial state. They hold for its laws only.
     regime : int
         Of `gearmesh.model.contact`.
     direction : float
@@ -192,5 +194,5 @@ class Branches:
 
 
 def _laws(problem: Problem) -> Problem:
-    """Return the laws that `problem` states, whatever its length and its start."""
+    """Return `problem` with a fixed length and initial condition, so that only its laws count."""
     return replace(problem, revolutions=1, kept_revolutions=0, initial_state=None)

@@ -1,9 +1,9 @@
 """Mesh stiffness: the rectangular wave, its Fourier series (4) and its mean (5).
 
 The functions take the mesh phase, the time in mesh periods T = 2 pi / omega_c with phase 0 where
-t = 0 in eq. (4). Two pairs of teeth carry (C_max) while the phase is within (epsilon - 1) / 2 of a
-whole number, one pair (C_min) in between. Stiffnesses come out in the unit that C_max and C_min
-have.
+t = 0 in eq. (4). Two pairs of teeth carry the load (C_max) while the phase is within (epsilon - 1)
+/ 2 of a whole number, and one pair (C_min) in between. Stiffnesses are returned in the unit of
+C_max and C_min.
 """
 
 import numpy as np

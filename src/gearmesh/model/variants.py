@@ -2,8 +2,8 @@
 
 Damping acts through the material of the teeth while flanks touch (normal and inverse mesh) and
 through the lubricant while they do not (contact loss), each with powers 1, 2 and 3 of the
-relative velocity. Tab. 1 names eight combinations of powers by the letters a to h, and draws
-each with a marker that says where it acts.
+relative velocity. Tab. 1 names eight combinations of powers by the letters a to h, and draws each
+with a marker that shows where it acts.
 """
 
 import difflib

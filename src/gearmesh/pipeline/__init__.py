@@ -1,6 +1,6 @@
-"""What the Snakefile asks and what its jobs run.
+"""Planning for the Snakefile, and the code of its jobs.
 
-`plan` says what each job of a study is made of, `stages` are the jobs as plain functions, and
+`plan` states what each job of a study is made of, `stages` are the jobs as plain functions, and
 ``python -m gearmesh.pipeline STAGE`` runs one of them. It may import everything else; nothing else
 imports it.
 """

@@ -1,8 +1,8 @@
 """Locks that keep two runs of a study apart.
 
-They are held through open files, so the system lets go of them when a process ends, however it
-ends: no lock is ever left behind. A run holds `.run.lock` alone. Its jobs share `.jobs.lock`; jobs
-that outlive a run that was killed still hold it, and the next run waits for them.
+They are held through open files, so the system releases them when a process ends, however it ends:
+no lock is ever left behind. Only one run holds `.run.lock`. Its jobs share `.jobs.lock`; jobs that
+outlive a killed run still hold it, and the next run waits for them.
 """
 
 import contextlib
@@ -24,7 +24,7 @@ _held: list[TextIO] = []
 
 @contextlib.contextmanager
 def job(places: Places) -> Iterator[None]:
-    """Be one of the jobs of a run while the context lasts."""
+    """Hold the lock of the jobs of a run while the context lasts."""
     with _open(places, "jobs") as lock:
         _lock(lock, fcntl.LOCK_SH)
         yield
@@ -32,7 +32,7 @@ def job(places: Places) -> Iterator[None]:
 
 @contextlib.contextmanager
 def alone(places: Places) -> Iterator[bool]:
-    """Keep other runs out while the context lasts; gives whether no other run is at work."""
+    """Keep other runs out while the context lasts; yields whether no other run is at work."""
     with _open(places, "run") as lock:
         try:
             _lock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
@@ -44,7 +44,7 @@ def alone(places: Places) -> Iterator[bool]:
 
 
 def begin_run(places: Places) -> None:
-    """Keep other runs out until this process ends, and clear what killed ones left half written.
+    """Keep other runs out until this process ends, and remove half-written files of killed runs.
 
     Raises
     ------
@@ -68,7 +68,7 @@ def begin_run(places: Places) -> None:
 
 
 def end_run(places: Places) -> None:
-    """Remove temporary files; the lock is let go when the process ends."""
+    """Remove temporary files; the lock is released when the process ends."""
     shutil.rmtree(places.scratch, ignore_errors=True)
     places.again.unlink(missing_ok=True)
 
@@ -83,7 +83,7 @@ def _wait_for_jobs(places: Places) -> None:
 
 
 def _lock(file: TextIO, how: int, warn: bool = False) -> None:
-    """Lock a file; where the file system has no locks, go on without."""
+    """Lock a file; continue without a lock if the file system has none."""
     try:
         fcntl.flock(file, how)
     except BlockingIOError:

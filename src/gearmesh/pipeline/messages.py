@@ -3,7 +3,7 @@
 import sys
 
 BAD_INPUT = 2
-"""Exit status for a mistake in what was given."""
+"""Exit status for a mistake in the input."""
 
 
 def say(line: str) -> None:

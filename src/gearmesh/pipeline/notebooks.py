@@ -1,6 +1,6 @@
 """Execute notebooks with papermill.
 
-The executed notebook is written also when a cell fails. Times and random identifiers are taken out
+The executed notebook is written even if a cell fails. Times and random identifiers are taken out
 of it, so the same inputs give the same bytes. Everything that kernels read and leave behind is in
 a folder of their own: they run in the interpreter of the pipeline whatever kernels are installed,
 need no home folder, and do not get into each other's way.
@@ -23,10 +23,10 @@ from gearmesh.errors import InputError
 from gearmesh.pipeline.messages import say
 
 START_TIMEOUT = 60
-"""Seconds that a kernel may take to start: many may start at once."""
+"""Seconds that a kernel may take to start; it is long because many may start at once."""
 
 ATTEMPTS = 3
-"""How often a kernel that does not answer is started: two may have taken the same port."""
+"""Number of attempts to start a kernel; one fails if two kernels have taken the same port."""
 
 KERNEL = "python3"
 
@@ -96,7 +96,7 @@ def _execute(notebook: Path, executed: Path, parameters: Mapping[str, str]) -> N
 
 
 def _prepare_kernel(folder: Path) -> None:
-    """Describe the one kernel there is, and keep what it prints of itself off the screen."""
+    """Describe the only kernel, and keep its own messages off the screen."""
     kernel = folder / "kernels" / KERNEL
     kernel.mkdir(parents=True)
     start = [sys.executable, "-m", "ipykernel_launcher", "-f", "{connection_file}"]

@@ -1,4 +1,4 @@
-"""What the Snakefile asks of a study: where its results go, and what each job is made of.
+"""The plan of a study for the Snakefile: where its results go, and what each job is made of.
 
 A job runs again when its manifest does not hold: when a file that it wrote or read is missing or
 was changed, or when it was made of something else. The manifests are checked when Snakemake starts
@@ -33,12 +33,12 @@ _STYLE = provenance.PACKAGE / "reproduction" / "figures" / "gearmesh.mplstyle"
 
 
 _FAR_FUTURE = 2**32 - 1
-"""A time that no result has, in seconds: the year 2106."""
+"""A time later than that of any result, in seconds: the year 2106."""
 
 
 @dataclass(frozen=True)
 class Plan:
-    """A study as the pipeline sees it.
+    """A study and the plan of its jobs.
 
     Attributes
     ----------
@@ -101,7 +101,7 @@ class Plan:
 
     @cached_property
     def holding(self) -> frozenset[str] | None:
-        """The jobs whose manifest holds, None if this is not the process or the time to ask.
+        """The jobs whose manifest holds; None if another process or another run is in charge.
 
         The reasons why other manifests do not hold are printed.
 
@@ -113,7 +113,7 @@ class Plan:
         if not self.main:
             return None
         with locks.alone(self.places) as undisturbed:
-            if not undisturbed:  # `locks.begin_run` will say so
+            if not undisturbed:  # `locks.begin_run` will report it
                 return None
             hashes = manifest.Hashes(self.places.folder)
             reasons: dict[str, list[str]] = {}
@@ -233,7 +233,7 @@ _FACTS: dict[str, Callable[..., object]] = {
     "box": lambda plan, design: plan.designs.sampling(design),
     "identification_notebook": lambda plan: plan.pair,
 }
-"""What a job depends on of the study, and of the settings of the identification."""
+"""The parts of the study and of the settings of the identification that a job depends on."""
 
 
 def _grid(study: Study) -> list[tuple[str, Sequence[float]]]:

@@ -55,7 +55,7 @@ def _quantity(value: float | tuple[float, ...] | tuple[tuple[float, float], ...]
 
 
 def computation(study: Study, resonance: xr.Dataset) -> Iterable[tuple[str, str]]:
-    """Yield what was run, and with what."""
+    """Yield rows on the cases, the solver and the versions of the software."""
     pair, cases, nu = study.pair, study.cases, study.nu
     periods = pair.revolutions * pair.teeth
     kept = pair.kept_revolutions * pair.teeth

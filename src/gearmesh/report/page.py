@@ -1,8 +1,8 @@
 """The report: one page that opens from disk.
 
-Nothing on it comes from a network: styles are within it, equations are MathML, figures and the
-pages of the notebooks are linked by relative paths. `render` makes the page from what it is given;
-`write_report` reads the results of a run and writes it.
+It needs no network: styles are within it, equations are MathML, figures and the pages of the
+notebooks are linked by relative paths. `render` makes the page from its arguments; `write_report`
+reads the results of a run and writes it.
 """
 
 import os
@@ -64,7 +64,7 @@ def write_report(study: Study, places: Places) -> None:
 
 
 def _identified(study: Study) -> str:
-    """Return as HTML what the claims tell about the open parameters."""
+    """Return the findings about the open parameters as HTML."""
     return section(
         table.read(),
         load_ledger(paths.CLAIMS),
@@ -94,7 +94,7 @@ def render(
     captions : dict of str to str
         Caption of each figure.
     identified : str
-        HTML of what the claims tell about the open parameters.
+        HTML of the findings about the open parameters.
     """
     return (
         environment()
@@ -141,7 +141,7 @@ def _figure(places: Places, name: str, caption: str, entries: Iterable[Entry]) -
 
 
 def _sensitivity(resonance: xr.Dataset) -> Iterable[tuple[str, int, int, float]]:
-    """Yield variants with sensitive cases, how many, of how many, and the others' worst error."""
+    """Yield variants with sensitive cases, their number, all cases, and the others' worst error."""
     for name in resonance["variant"].values:
         course = resonance.sel(variant=name)
         computed = course["status"].values == 0

@@ -99,7 +99,7 @@ def _target(target: Any, tolerance: float | None) -> str:
 
 
 def typeset(text: str) -> Markup:
-    """Write symbols as the paper does: ν_s with its index low, c-material as c-□."""
+    """Write symbols as the paper does: ν_s with a subscript, c-material as c-□."""
     text = _VARIANT.sub(_symbol, str(escape(text)))
     return Markup(re.sub(r"(?<=\w)_([A-Za-z0-9]+)", r"<sub>\1</sub>", text))
 
@@ -112,7 +112,7 @@ def _symbol(match: re.Match[str]) -> str:
 
 @cache
 def environment() -> jinja2.Environment:
-    """Return the environment of the templates: everything is escaped, nothing may be missing."""
+    """Return the environment of the templates: it escapes all values and refuses missing ones."""
     made = jinja2.Environment(
         loader=jinja2.FileSystemLoader(TEMPLATES),
         autoescape=True,

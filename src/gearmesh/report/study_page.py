@@ -1,6 +1,6 @@
 """The report of a study of one's own: one page that opens from disk, figures included.
 
-It says what was computed and shows it; it compares nothing with the paper.
+It describes and shows what was computed, without a comparison with the paper.
 """
 
 import base64
@@ -68,7 +68,7 @@ def _embedded(picture: Path) -> str:
 
 
 def _row(curve: xr.Dataset) -> dict[str, object]:
-    """Return what one variant came to."""
+    """Return the results of one variant."""
     counts = Counter(int(flag) for flag in curve["status"].values)
     failed = {STATUSES[flag]: number for flag, number in sorted(counts.items()) if flag > 0}
     return {

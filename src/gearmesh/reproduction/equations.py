@@ -18,7 +18,7 @@ class Equation:
     latex : tuple of str
         The equation, in lines.
     reading : str
-        How the model takes it, in one or two sentences.
+        How the model interprets it, in one or two sentences.
     """
 
     number: int
@@ -61,8 +61,8 @@ EQUATIONS = (
             r"y(\tau)=R_{b3}\varphi_3+R_{b2}\varphi_2+y_3-y_2+e_3\,\sin\,\varphi_3"
             r"-e_2\,\sin(\Delta-\varphi_2)+{}^{1,2}f(\tau)",
         ),
-        "Normal mesh for y ≥ 0, contact loss for −s < y < 0, inverse mesh for y ≤ −s. In the "
-        "sines stands the whole rotation of the wheel, not only its vibration.",
+        "Normal mesh for y ≥ 0, contact loss for −s < y < 0, inverse mesh for y ≤ −s. The "
+        "sines contain the whole rotation of the wheel, not only its vibration.",
     ),
     Equation(
         4,

@@ -23,10 +23,10 @@ inner = partial(njit, no_cpython_wrapper=True, no_cfunc_wrapper=True)
 def persistent(build: Callable[[str, bool], Any]) -> Callable[..., Any]:
     """Return the function that `build` compiles, compiled at its first call and kept on disk.
 
-    numba looks for changes only in the file of the function that it keeps, and not in those of
-    the functions that this one calls; `gearmesh.solvers.sources` covers them all. Nor does numba
-    keep processes that start together from doing the same work: here one compiles, and the others
-    wait for its result where the system has file locks.
+    numba checks only the file of the function that it caches for changes, not those of the
+    functions that it calls; `gearmesh.solvers.sources` covers them all. Processes that start
+    together would also all compile the same code. Here one compiles and the others wait for its
+    result, if the system has file locks.
 
     Parameters
     ----------
@@ -69,7 +69,7 @@ def persistent(build: Callable[[str, bool], Any]) -> Callable[..., Any]:
 
 @contextlib.contextmanager
 def _alone(cache: str | None, name: str) -> Iterator[None]:
-    """Let one process at a time go on; where nothing is kept, or no file can be locked, all."""
+    """Let one process at a time continue; all of them if there is no cache or no file lock."""
     with contextlib.ExitStack() as stack:
         with contextlib.suppress(OSError):
             if cache and fcntl:

@@ -1,4 +1,4 @@
-"""How long a step may be, how many a run may take, and how far it may go: for both solvers."""
+"""Limits of both solvers: the length of a step, the number of steps, the size of y."""
 
 import math
 
@@ -8,10 +8,10 @@ FARTHEST = 1e6
 """Beyond this distance from the backlash, in y_st, a run has diverged."""
 
 _LONGEST_ANGLE = 2.0
-# Steps of a mesh period in which little is fast, and steps in one unit of the fastest time.
+# Steps that are allowed in every mesh period, and in addition in each unit of the fastest time.
 _STEPS_PER_PERIOD = 2000.0
 _STEPS_PER_UNIT = 20.0
-# A mesh period that takes more is not integrated at all.
+# A run with more steps in a mesh period is not integrated at all.
 _MOST_PER_PERIOD = 1e6
 
 
@@ -26,9 +26,9 @@ def highest_frequency(problem: Problem) -> float:
 def longest_step(problem: Problem) -> float:
     """Return the longest step in tau_s, two radians of the fastest oscillation.
 
-    It keeps the places of a step where events are looked for close together. It also keeps the
-    series of a mode that is hardly excited within its convergence: such a mode would grow from
-    rounding errors that the tolerance does not see.
+    The limit keeps the points of a step at which events are searched for close together. It also
+    keeps the series of a hardly excited mode convergent: otherwise such a mode would grow from
+    rounding errors that are below the tolerance.
     """
     return _LONGEST_ANGLE / highest_frequency(problem)
 
@@ -39,7 +39,7 @@ def farthest(problem: Problem) -> float:
 
 
 def most_steps(problem: Problem) -> float:
-    """Return the number of steps after which a run is given up; 0 if it cannot be done at all."""
+    """Return the greatest number of steps of a run; 0 if the run cannot be integrated at all."""
     required = problem.period / longest_step(problem)
     if required > _MOST_PER_PERIOD:
         return 0.0

@@ -17,11 +17,9 @@ OK, STEP_LIMIT, DIVERGED, FRICTION_UNDEFINED = range(4)
 """Outcome of a run, as the compiled solvers return it."""
 
 STATUSES = ("ok", "step_limit", "diverged", "friction_undefined")
-"""Their names, as in `Response.status`.
-
-``step_limit``: too many steps, because something in the problem is too fast. ``diverged``: y has
-left every scale of the problem. ``friction_undefined``: no sign of eq. (6) lasts
-(`gearmesh.model.friction`).
+"""Their names, as in `Response.status`. ``step_limit``: too many steps, because a rate of the
+problem is too high. ``diverged``: y is far beyond all lengths of the problem.
+``friction_undefined``: no sign of eq. (6) lasts (`gearmesh.model.friction`).
 """
 
 LOOSENING = 100.0
@@ -48,7 +46,7 @@ MEASURED = [
     ("loss_time", np.float64),
     ("inverse_time", np.float64),
 ]
-"""Fields of what a compiled solver measures on a run besides its extrema, strobes and samples."""
+"""Fields of the summary of a run by a compiled solver."""
 
 
 @dataclass(slots=True)
@@ -111,13 +109,13 @@ class Response:
         differs by more than `SENSITIVE` tolerances in `y_max`, in `y_min` or at any boundary of the
         whole run. None if errors were not estimated.
     rotation_drift : float
-        What the mean rotation (phi_3 - phi_2)/2 gains over the run, in rad. Nothing but friction
-        turns it, and nothing holds it (`gearmesh.model.friction`). Not a number in the reduced
-        system, which does not follow it.
+        Change of the mean rotation (phi_3 - phi_2)/2 over the run, in rad. Only friction turns it,
+        and nothing holds it (`gearmesh.model.friction`). Not a number in the reduced system, which
+        does not contain it.
     final_state : State or None
-        The end of the run, to go on from.
+        The state at the end of the run, from which it can be continued.
     samples : Samples or None
-        The time course, where it was asked for.
+        The time course, if it was requested.
     """
 
     status: str
@@ -146,7 +144,7 @@ class Response:
 
 @dataclass(slots=True)
 class Companion:
-    """What a companion run leaves: its summary (`MEASURED`) and its strobes."""
+    """Result of a companion run: its summary (`MEASURED`) and its stroboscopic points."""
 
     summary: Mapping[str, Any]
     strobes: np.ndarray
@@ -203,7 +201,7 @@ def _measure(
     extrema: np.ndarray,
     samples: Any,
 ) -> None:
-    """Write what is measured on the kept revolutions."""
+    """Write the quantities that are measured on the kept revolutions."""
     duration = problem.kept_periods * problem.period
     response.extremum_time = extrema["time"].copy()
     response.extremum_y = extrema["y"].copy()
@@ -225,7 +223,7 @@ def _estimate(
     companion: Companion,
     bound: float,
 ) -> None:
-    """Write what the companion says about errors."""
+    """Write the errors that are estimated from the companion run."""
     if companion.summary["status"] != OK:
         response.y_max_error = response.y_min_error = np.inf
         response.sensitive = True
@@ -233,6 +231,6 @@ def _estimate(
     errors = [abs(float(summary[name] - companion.summary[name])) for name in ("y_max", "y_min")]
     if response.n_contact_losses is not None:
         response.y_max_error, response.y_min_error = errors
-    # Extremes may agree by chance on two ways that have parted, and parted ways may meet again.
+    # Runs that have separated may have equal extremes by chance, and may come together again.
     apart = float(np.abs(strobes - companion.strobes).max())
     response.sensitive = max(*errors, apart) > bound

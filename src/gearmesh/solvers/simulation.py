@@ -1,6 +1,6 @@
 """Integration of runs, one or thousands, to a tolerance.
 
-`simulate` is the one door to both solvers: the compiled sweep over SIMD lanes
+`simulate` is the entry to both solvers: the compiled sweep over SIMD lanes
 (`gearmesh.solvers.reduced.sweep`) for the reduced system, and the general solver in the six
 coordinates (`gearmesh.solvers.full.runs`) for what the reduction leaves out: run-out, profile
 deviation and the truncated Fourier series of the stiffness.

@@ -27,7 +27,7 @@ VariantName = Annotated[str, BeforeValidator(_read_variant)]
 
 
 class StrongDamping(Section):
-    """One variant again with its damping multiplied."""
+    """One of the variants, repeated with its damping multiplied by a factor."""
 
     variant: VariantName = Field(description="the variant")
     factor: float = quantity("1", "k'/k", "factor on the damping", 1e-3, 1e3)
@@ -171,7 +171,7 @@ class Study:
     def ledger(self) -> Path:
         """The ledger of claims; the pipeline asks for it only if the study has one."""
         if self.claims is None:
-            raise InputError(f"{self.path}: claims: missing; wanted is a ledger of claims")
+            raise InputError(f"{self.path}: claims: missing; expected: a ledger of claims")
         return self.claims
 
     @property

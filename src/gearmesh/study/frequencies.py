@@ -35,7 +35,7 @@ class Frequencies(Section):
     """Frequencies ν_s: a grid, single values, or both."""
 
     start: Nu | None = Field(None, description="first frequency of the grid")
-    stop: Nu | None = Field(None, description="last frequency of the grid, at the most")
+    stop: Nu | None = Field(None, description="upper limit of the grid")
     step: float | None = quantity("1", "Δν", "step of the grid", 1e-9, 1.0, default=None)
     values: tuple[Nu, ...] = Field((), description="further frequencies")
 

@@ -19,7 +19,7 @@ from gearmesh.study.schema import nearest, shown, validate
 _MAX_BASES = 8
 _NAME = re.compile(r"[A-Za-z0-9_-][A-Za-z0-9._-]{0,63}")
 _OWN = ("name", "title", "claims")
-"""Keys that a file does not inherit from its base: they say what this very study is."""
+"""Keys that a file does not inherit from its base, because they identify the study itself."""
 
 
 def load_study(path: str | Path, overrides: Iterable[str] = ()) -> Study:
@@ -63,7 +63,7 @@ def _name(path: Path, name: object) -> str:
     if not isinstance(name, str) or not _NAME.fullmatch(name):
         raise InputError(
             f"{path}: name: found {shown(name)}; allowed are letters, digits, '.', '_' and '-', "
-            "64 at most, not '.' first; without a name, the file's name counts"
+            "64 at most, not '.' first; without a name, that of the file is used"
         )
     return name
 
@@ -89,10 +89,10 @@ def _hint(key: str, known: Iterable[str]) -> str:
 
 
 def _read_plan(data: dict[str, object], own: Mapping[str, object], path: Path) -> Plan:
-    """Read all that is no parameter.
+    """Read all keys that are not parameters.
 
-    A file that states other variants or frequencies means these only: time courses that it
-    inherits for cases that it does not have are left out.
+    If a file states its own variants or frequencies, the time courses that it inherits for other
+    cases are left out.
     """
     courses = data.pop("time_courses", None)
     plan = validate(Plan, data, str(path), {})
@@ -119,7 +119,7 @@ def _is_left_out(data: Mapping[str, object]) -> bool:
 
 
 def _within(nus: object, span: tuple[float, float]) -> object:
-    """Return the frequencies within a span; anything else as it is, for validation to refuse."""
+    """Return the frequencies within a span; anything else unchanged, for validation to refuse."""
     try:
         return [nu for nu in nus if span[0] <= read_nu(nu) <= span[1]]  # type: ignore[attr-defined]
     except (TypeError, ValueError):
@@ -129,7 +129,7 @@ def _within(nus: object, span: tuple[float, float]) -> object:
 def _with_bases(
     path: Path, inheriting: tuple[Path, ...]
 ) -> tuple[dict[str, object], dict[str, object]]:
-    """Read a file; return it merged over its bases, and alone."""
+    """Read a file; return its content merged into that of its bases, and its own content."""
     if path.resolve() in inheriting or len(inheriting) >= _MAX_BASES:
         raise InputError(f"{path}: base: the files inherit in a circle, or more than {_MAX_BASES}")
     own = yamlfile.read_mapping(path)
@@ -150,9 +150,9 @@ def _with_bases(
 
 
 def _merge(base: Mapping[str, object], own: Mapping[str, object]) -> dict[str, object]:
-    """Lay `own` over `base`.
+    """Merge `own` into `base`.
 
-    Mappings are merged key by key, parameters and all else are replaced, and an empty value
+    Mappings are merged key by key, parameters and everything else are replaced, and an empty value
     removes a key.
     """
     merged = dict(base)

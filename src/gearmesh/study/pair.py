@@ -1,7 +1,7 @@
 """The gear pair: every parameter with its unit, where its value comes from, and what follows.
 
-A `Pair` holds its values in mm, kg, s, N and rad. It remembers how each value was stated, so that
-a backlash of ``8 y_st`` follows the static deflection when that is replaced.
+A `Pair` holds its values in mm, kg, s, N and rad. It stores how each value was stated, so that a
+backlash of ``8 y_st`` changes with the static deflection when that is replaced.
 """
 
 import hashlib
@@ -22,7 +22,7 @@ from gearmesh.study.provenance import DEFAULT, SETTING, STATED, Statement
 from gearmesh.study.schema import Section, quantity, read_quantity, shown, validate
 
 KG_PER_N_S2_MM = 1000.0
-"""1 N s²/mm = 1000 kg: with it stiffnesses in N/mm and masses in kg go together."""
+"""1 N s²/mm = 1000 kg: it makes stiffnesses in N/mm and masses in kg consistent."""
 
 SETTINGS = frozenset(
     {"initial_phase", "initial_displacement", "initial_velocity"}
@@ -130,15 +130,15 @@ class Pair(Section):
         default=0,
     )
     initial_phase: float = quantity(
-        *("1", "p_0", "start within the mesh period; 0 is the middle of the C_max pulse", 0.0, 1.0),
+        *("1", "p_0", "mesh phase at which a run starts; 0: middle of the C_max pulse", 0.0, 1.0),
         default=0.0,
     )
     initial_displacement: float | None = quantity(
-        *("mm", "y_0", "relative motion y at the start; static equilibrium if open", -1e3, 1e3),
+        *("mm", "y_0", "initial relative motion y; static equilibrium if open", -1e3, 1e3),
         default=None,
     )
     initial_velocity: float = quantity(
-        "mm", "y'_0", "dy/dτ_s at the start, τ_s = Ω_s t", -1e3, 1e3, default=0.0
+        "mm", "y'_0", "initial dy/dτ_s, τ_s = Ω_s t", -1e3, 1e3, default=0.0
     )
     revolutions: int = quantity("1", "n_r", "revolutions that are run", 1, 10_000, default=5)
     kept_revolutions: int = quantity(
@@ -210,7 +210,7 @@ class Pair(Section):
         return Pair.from_statements({**self._all_statements(), **new})
 
     def model_copy(self, *, update: Mapping[str, Any] | None = None, deep: bool = False) -> Self:
-        """Copy without validation; the copy knows its values, not how they were stated."""
+        """Copy without validation; the copy holds the values, but not how they were stated."""
         copy = super().model_copy(update=update, deep=deep)
         copy._statements = {}
         return copy
@@ -375,7 +375,7 @@ class Pair(Section):
         return json.dumps(self.model_dump(mode="json"), sort_keys=True, separators=(",", ":"))
 
     def digest(self) -> str:
-        """Return the SHA-256 of all values: blind to units, order and wording."""
+        """Return the SHA-256 of all values; the stated units, order and wording have no effect."""
         return hashlib.sha256(self.canonical().encode()).hexdigest()
 
 
@@ -408,7 +408,7 @@ def _resolved(data: dict[str, Any]) -> dict[str, Any]:
 def _scale(scale: str, data: Mapping[str, Any], user: str) -> float:
     """Return the size of a scale, for `user` and other parameters that are stated in it.
 
-    What is wrong with the scale itself is reported here, once, and not for each of them.
+    A mistake in the scale itself is reported here, once, and not for each of them.
     """
     declared = dict(_declarations())
 

@@ -59,5 +59,5 @@ def read_statement(name: str, data: object) -> Statement:
     if not isinstance(reason, str) or "\n" in reason.strip():
         raise InputError(f"{name}.reason: found {shown(reason)}; allowed is one line")
     if not reason.strip() and kind != STATED:
-        raise InputError(f"{name}.reason: missing; kind {kind} needs one line that says why")
+        raise InputError(f"{name}.reason: missing; kind {kind} needs one line with the reason")
     return Statement(data["value"], kind, reason.strip())

@@ -1,4 +1,4 @@
-"""How a section of the configuration is declared, and how a slip in one is told.
+"""How a section of the configuration is declared, and how a mistake in one is reported.
 
 A section is a frozen pydantic model that refuses unknown keys. A field declared with `quantity`
 takes text with a unit and holds a float in the unit that the field states.
@@ -106,7 +106,7 @@ def _read_item(item: object, declared: Mapping[str, Any]) -> object:
     except ValueError as error:
         if isinstance(item, list | tuple):
             raise
-        raise ValueError(f"in it {shown(item)} is wrong: {error}") from None
+        raise ValueError(f"item {shown(item)} is wrong: {error}") from None
 
 
 def _range(low: float, high: float, unit: str) -> str:
@@ -133,7 +133,7 @@ def validate(model: type[Model], data: object, where: str, changed: Mapping[str,
     Raises
     ------
     InputError
-        One line with the first slip, and how many more there are.
+        One line with the first mistake, and the number of further ones.
     """
     try:
         return model.model_validate(data)
@@ -147,7 +147,7 @@ def validate(model: type[Model], data: object, where: str, changed: Mapping[str,
 
 
 def _origin(key: str, where: str, changed: Mapping[str, str]) -> str:
-    """Say where the value of a key came from, or those of a section."""
+    """Return where the value of a key, or the values of a section, came from."""
     for name, origin in changed.items():
         if f"{key}.".startswith(f"{name}."):
             return origin
@@ -184,7 +184,7 @@ class _Slip(NamedTuple):
 
 
 def _slips(model: type[BaseModel], data: object, error: ValidationError) -> list[_Slip]:
-    """Tell every slip: unknown keys first, missing ones last."""
+    """Return every mistake: unknown keys first, missing ones last."""
     unknown, wrong, missing = [], [], []
     for item in error.errors(include_url=False, include_input=False):
         loc = item["loc"]
@@ -211,7 +211,7 @@ def _slips(model: type[BaseModel], data: object, error: ValidationError) -> list
 
 
 def _model_at(model: type[BaseModel], loc: Sequence[int | str]) -> type[BaseModel] | None:
-    """Return the section at a key, None if there is a value there."""
+    """Return the section at a key, or None if there is a value instead."""
     inside = iter(loc)
     for part in inside:
         info = model.model_fields.get(str(part))
@@ -225,10 +225,10 @@ def _model_at(model: type[BaseModel], loc: Sequence[int | str]) -> type[BaseMode
 
 
 def _purpose(model: type[BaseModel], loc: Sequence[int | str]) -> str:
-    """Say what a missing key, or the list with a missing item, is for."""
+    """Return the purpose of a missing key, or of the list with a missing item."""
     section = _model_at(model, loc[:-1])
     info = section.model_fields[str(loc[-1])] if section else model.model_fields[str(loc[0])]
-    return f"; wanted is {info.description}" if info.description else ""
+    return f"; expected: {info.description}" if info.description else ""
 
 
 def _at(data: Any, loc: Sequence[int | str]) -> object:

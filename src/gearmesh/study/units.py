@@ -23,7 +23,7 @@ _DECIMAL_COMMA = re.compile(r"[0-9],[0-9]")
 _LONGEST = 80  # characters: no quantity needs more, and the patterns above stay fast
 
 SCALES = {"y_st": "mm", "m_red": "kg", "C_s": "N/mm"}
-"""What a quantity may be a multiple of, as in ``"8 y_st"``, and its unit."""
+"""Scales of which a quantity may be a multiple, as in ``"8 y_st"``, and their units."""
 
 _NAMES = {
     "1": "a plain number",
@@ -38,7 +38,7 @@ _NAMES = {
 
 @cache
 def registry() -> "pint.UnitRegistry[float]":
-    """Return the one registry of units (built on first use: that takes a moment)."""
+    """Return the only registry of units; it is built on first use, because that takes a moment."""
     return pint.UnitRegistry()
 
 
@@ -60,17 +60,17 @@ def parse(value: object, unit: str) -> float:
     Raises
     ------
     ValueError
-        If the text is no quantity, not finite, has no unit or one of another dimension; the
-        message says what is wanted.
+        If the text is no quantity, not finite, has no unit or one of another dimension; the message
+        names what is expected.
     """
     if isinstance(value, bool) or not isinstance(value, str | Real):
-        raise ValueError(f"not a quantity; wanted is {wanted(unit)}")
+        raise ValueError(f"not a quantity; expected: {wanted(unit)}")
     if isinstance(value, str):
         number, given = _split(value, unit)
     else:
         number, given = _finite(value, unit), None
     if given is None and unit != "1":
-        raise ValueError(f"unit missing; wanted is {wanted(unit)}")
+        raise ValueError(f"unit missing; expected: {wanted(unit)}")
     if given == "%" and unit == "1":
         number /= 100.0
     elif given is not None:
@@ -123,13 +123,13 @@ def _split(text: str, unit: str) -> tuple[float, str | None]:
     if multiple := _multiple(text):
         scale = multiple["scale"]
         known = f"no scale '{scale}', only {', '.join(SCALES)}"
-        problem = f"'{scale}' cannot stand here" if scale in SCALES else known
-        raise ValueError(f"{problem}; wanted is {wanted(unit)}")
+        problem = f"'{scale}' is not allowed here" if scale in SCALES else known
+        raise ValueError(f"{problem}; expected: {wanted(unit)}")
     match = _QUANTITY.fullmatch(text) if len(text) <= _LONGEST else None
     if match is None:
         comma = len(text) <= _LONGEST and _DECIMAL_COMMA.search(text)
         hint = "use a decimal point; " if comma else ""
-        raise ValueError(f"not a quantity; {hint}wanted is {wanted(unit)}")
+        raise ValueError(f"not a quantity; {hint}expected: {wanted(unit)}")
     return _finite(float(match["number"]), unit), match["unit"]
 
 
@@ -139,14 +139,14 @@ def _finite(number: SupportsFloat, unit: str) -> float:
     except OverflowError:
         found = math.inf
     if not math.isfinite(found):
-        raise ValueError(f"not finite; wanted is {wanted(unit)}")
+        raise ValueError(f"not finite; expected: {wanted(unit)}")
     return found
 
 
 def _convert(number: float, given: str, unit: str) -> float:
     """Convert between units of the same kind (an angle is no plain number)."""
     if unit == "1":
-        raise ValueError(f"unit '{given}' where none belongs; wanted is {wanted(unit)}")
+        raise ValueError(f"unit '{given}' where none belongs; expected: {wanted(unit)}")
     units = registry()
     try:
         source = units.parse_units(given.replace("°", "deg").replace("·", "*"))
@@ -155,9 +155,9 @@ def _convert(number: float, given: str, unit: str) -> float:
         factor, root = units.get_base_units(source)
         target_factor, target_root = units.get_base_units(target)
     except pint.UndefinedUnitError:
-        raise ValueError(f"unknown unit '{given}'; wanted is {wanted(unit)}") from None
+        raise ValueError(f"unknown unit '{given}'; expected: {wanted(unit)}") from None
     except (pint.PintError, ArithmeticError, ValueError, TypeError, AttributeError):
-        raise ValueError(f"unit '{given}' cannot be read; wanted is {wanted(unit)}") from None
+        raise ValueError(f"unit '{given}' cannot be read; expected: {wanted(unit)}") from None
     if root != target_root:
-        raise ValueError(f"unit '{given}' is of another kind; wanted is {wanted(unit)}")
+        raise ValueError(f"unit '{given}' is of another kind; expected: {wanted(unit)}")
     return _finite(number * (factor / target_factor), unit)

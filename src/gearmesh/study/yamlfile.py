@@ -1,7 +1,7 @@
 """YAML read strictly: plain data only, each key once, and one line for each mistake.
 
 Scalars follow YAML 1.2 (``1e-10`` is a number; ``no``, ``1:30`` and dates are texts). Aliases and
-tags are refused, so that a file is as large as it looks and cannot run code.
+tags are refused, so that a file cannot expand in memory or run code.
 """
 
 import re
@@ -48,7 +48,7 @@ class _Loader(yaml.SafeLoader):
             if not isinstance(key, str):
                 raise _slip("a key is not a text", key_node)
             if key in seen:
-                raise _slip(f"key {key!r:.60} stands twice", key_node)
+                raise _slip(f"key {key!r:.60} occurs twice", key_node)
             seen.add(key)
         return super().construct_mapping(node, deep)
 
@@ -84,14 +84,14 @@ def read_mapping(path: Path) -> dict[str, object]:
 
 
 def read_value(text: str, where: str) -> object:
-    """Read one value, as it stands behind a key; `where` begins the message of a slip."""
+    """Read one value, written as after a key; `where` begins the message about a mistake."""
     return _load(text, where)
 
 
 def _text(path: Path) -> str:
     try:
         if path.stat().st_size > _MAX_BYTES:
-            raise InputError(f"{path}: larger than {_MAX_BYTES} bytes, which no configuration is")
+            raise InputError(f"{path}: larger than {_MAX_BYTES} bytes; allowed is a smaller file")
         return path.read_bytes().decode("utf-8-sig")
     except UnicodeDecodeError as error:
         raise InputError(f"{path}: byte {error.start} is not UTF-8; save it as UTF-8") from None

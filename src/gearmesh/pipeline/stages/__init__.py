@@ -1,7 +1,7 @@
 """The jobs of the pipeline: each public function is a stage, and returns the files that it wrote.
 
-A stage imports within its body what it alone needs: a job starts quickly, and runs again only when
-something changes that it uses (`gearmesh.data.provenance.code_digest`).
+A stage imports within its body what only it needs. A job therefore starts quickly, and runs again
+only if something that it uses changes (`gearmesh.data.provenance.code_digest`).
 """
 
 from gearmesh.pipeline.stages import cases, claims, datasets, figures, identify, report
@@ -21,5 +21,5 @@ STAGES = {
 
 
 def job_name(stage: str, *arguments: str) -> str:
-    """Return the name of a job, by which its manifest, log and benchmark are called."""
+    """Return the name of a job, which is also that of its manifest, log and benchmark."""
     return "-".join((stage, *arguments))

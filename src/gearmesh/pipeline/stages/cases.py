@@ -1,8 +1,8 @@
 """Compute the cases of a letter of Tab. 1.
 
-Case files that are still as the manifest says are kept if they are cases of this study. Where only
-the attributes of a file are out of date (a parameter changed that this case does not depend on),
-it is written again with what it holds. All others are integrated.
+Case files that still match the manifest are kept if they are cases of this study. If only the
+attributes of a file are out of date (because a parameter without effect on the case changed), its
+numbers are kept and it is written again. All other cases are integrated.
 """
 
 import time
@@ -52,7 +52,7 @@ def cases(study: Study, places: Places, letter: str) -> list[Path]:
 
 
 def case(study: Study, places: Places, variant: str, nu: str) -> list[Path]:
-    """Compute one case, whose file is asked for by its name."""
+    """Compute one case, whose file was requested by its name."""
     file = places.case(variant, nu)
     if study.plan.direction:
         raise InputError(f"{file}: a run of a sweep is not computed alone; ask for 'data'")
@@ -64,7 +64,7 @@ def case(study: Study, places: Places, variant: str, nu: str) -> list[Path]:
 
 
 def _kept(study: Study, places: Places, files: dict[Case, Path], path: Path) -> dict[Case, Record]:
-    """Return what the case files hold that need no integration."""
+    """Return the contents of the case files that need no integration."""
     before = manifest.read(path)
     if before is None or study.plan.direction:
         return {}  # a run of a sweep depends on all runs before it

@@ -20,7 +20,7 @@ def printed(study: Study, places: Places) -> list[Path]:
 
 
 def ledger(study: Study, places: Places) -> list[Path]:
-    """Put the checks of all figures together, with a line for each figure and the counts."""
+    """Collect the checks of all figures; write a line for each figure, and the counts."""
     from collections import Counter
 
     from gearmesh.data.writing import write_text
@@ -40,7 +40,7 @@ def ledger(study: Study, places: Places) -> list[Path]:
 
 
 def verdict(study: Study, places: Places) -> list[Path]:
-    """Print how the claims came out; fail if a status is not the expected one."""
+    """Print the result of the claims; fail if a status is not the expected one."""
     import sys
 
     from gearmesh.data.writing import write_text

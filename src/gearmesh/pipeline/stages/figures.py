@@ -34,7 +34,7 @@ def figure(study: Study, places: Places, name: str) -> list[Path]:
 
 
 def identified_figures(study: Study, places: Places) -> list[Path]:
-    """Draw the report's figures of what the claims say about the open parameters."""
+    """Draw the report's figures of the open parameters, as inferred from the claims."""
     from gearmesh.identification import layout, table
     from gearmesh.identification.design import stated
     from gearmesh.identification.figures import draw_regions, draw_sensitivity

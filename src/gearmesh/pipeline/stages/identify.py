@@ -17,7 +17,7 @@ def samples(study: Study, places: Places, design: str, index: str) -> list[Path]
     from gearmesh.identification.settings import load_settings
     from gearmesh.identification.survey import compute
 
-    # Where nothing of a kind exists, the median of nothing is not a number, and meant to be.
+    # A quantity that exists nowhere has the median not-a-number, as intended.
     warnings.filterwarnings("ignore", category=RuntimeWarning)
     settings = load_settings(layout.SETTINGS)
     stated = settings.designs[design]

@@ -31,7 +31,8 @@ def friction_sense(evidence: Evidence) -> tuple[dict[str, dict[str, float]], str
     for name, case in _cases(evidence).items():
         phase, force = mesh_phase(case, evidence), case["force_friction"].values
         double = in_double_contact(phase, evidence.pair.contact_ratio)
-        # A sample on a switch may belong to either side of it, so the outermost are left out.
+        # A sample on a switch may belong to either side of it, so the outermost samples are left
+        # out.
         inner = double & np.roll(double, 1) & np.roll(double, -1)
         turns = np.flatnonzero(force[1:] * force[:-1] < 0)
         scale = np.abs(force).max()

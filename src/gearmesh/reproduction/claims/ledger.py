@@ -35,7 +35,7 @@ class Bound(Section):
     @model_validator(mode="after")
     def _bounds_something(self) -> "Bound":
         if self.at_least is None and self.at_most is None:
-            raise ValueError("at_least: missing; needed is it, at_most or both")
+            raise ValueError("at_least: missing; allowed are at_least, at_most or both")
         low, high = self.at_least, self.at_most
         if low is not None and high is not None and low > high:
             raise ValueError(f"at_least: {low:g} is above at_most, {high:g}")
@@ -54,10 +54,10 @@ def _target(value: object) -> Target:
 
 
 class Claim(Section):
-    """One statement of the paper, and what counts as showing it.
+    """One statement of the paper, and the result that confirms it.
 
-    `expected` is a number (then `tolerance` says how far off the measured value may be), a
-    `Bound`; or a mapping from the names of several quantities to such targets.
+    `expected` is a number (then `tolerance` limits the error of the measured value), a `Bound`, or
+    a mapping from the names of several quantities to such targets.
     """
 
     id: str = Field(pattern=r"^[A-Z][0-9]+(\.[0-9]+)?$", description="P1, F2.1, ...")
@@ -81,7 +81,7 @@ class Claim(Section):
     @model_validator(mode="after")
     def _is_complete(self) -> "Claim":
         if (self.expected_status == REPRODUCED) != (self.reason is None):
-            raise ValueError("reason: needed for an expected_status that is not 'reproduced' only")
+            raise ValueError("reason: needed if, and only if, expected_status is not 'reproduced'")
         if isinstance(self.tolerance, dict):
             if not isinstance(self.expected, dict):
                 raise ValueError("tolerance: found a mapping; allowed is a number, as for expected")
@@ -90,7 +90,7 @@ class Claim(Section):
         for name, target, tolerance in self.targets():
             of = f" of {name!r}" if name else ""
             if isinstance(target, Bound) != (tolerance is None):
-                raise ValueError(f"tolerance: needed for an expected number only{of}")
+                raise ValueError(f"tolerance: needed for expected numbers, not for bounds{of}")
             if tolerance is not None and not 0 <= tolerance < math.inf:
                 raise ValueError(f"tolerance: found {tolerance:g}{of}; allowed is a number >= 0")
         return self
@@ -114,8 +114,9 @@ class Claim(Section):
 class Entry(Claim):
     """A claim with what was found.
 
-    `judged` is false where the study lacks what the claim speaks of (a smoke study has few
-    variants): then the status is 'not_testable' and counts neither for nor against.
+    `judged` is false if something that the claim is about is missing in the study (a smoke study
+    has few variants). The status is then 'not_testable', and the claim counts neither for nor
+    against.
     """
 
     measured: Any = None
@@ -129,7 +130,7 @@ class Entry(Claim):
         return self.judged and self.status != self.expected_status
 
     def as_json(self) -> dict[str, Any]:
-        """Return the entry as it stands in `results/claims.json`."""
+        """Return the entry in the form of `results/claims.json`."""
         optional = {"tolerance_reason", "reason"}
         found = self.model_dump(mode="json")
         return {
@@ -159,19 +160,19 @@ def _satisfies(value: Any, target: Target, tolerance: float | None) -> bool:
         low = -math.inf if target.at_least is None else target.at_least
         high = math.inf if target.at_most is None else target.at_most
         return low <= value <= high
-    # A measured value that sits on the limit must not fail by the last bit.
+    # A measured value at the limit must not fail because of rounding.
     return tolerance is not None and abs(value - target) <= tolerance * (1 + 1e-9)
 
 
 def holds(claim: Claim, measured: Any) -> bool:
-    """Tell whether what was measured is what the claim says, within its tolerance.
+    """Return whether the measured value agrees with the claim, within its tolerance.
 
     Parameters
     ----------
     claim : Claim
     measured : number or None, or a mapping from variants to these
         Where `claim.expected` names several quantities, a mapping from their names to such
-        values. Every one must fit; nothing measured (None, not a number, empty) does not.
+        values. Every one must fit; a missing value (None, not a number, empty) does not fit.
     """
     named = measured if isinstance(claim.expected, dict) else {"": measured}
     return all(
@@ -181,7 +182,7 @@ def holds(claim: Claim, measured: Any) -> bool:
 
 
 def load_ledger(path: Path) -> list[Claim]:
-    """Read and check `config/claims.yaml`: a mapping from the id of a claim to the rest of it.
+    """Read and check `config/claims.yaml`: a mapping from the id of a claim to its other keys.
 
     Raises
     ------
@@ -225,8 +226,8 @@ def read_entries(path: Path) -> list[Entry]:
 def collect(ledger: Iterable[Claim], checks: Iterable[Path], output: Path) -> list[Entry]:
     """Put the checks of all figures together, in the order of the ledger, as `results/claims.json`.
 
-    A claim that no file speaks of (its notebook broke before the check) is entered as
-    'not_testable', and is judged: it is unexpected unless the ledger expects it.
+    A claim that is missing in all files (because its notebook failed before the check) is entered
+    as 'not_testable', and is judged: it is unexpected unless the ledger expects it.
     """
     found = {entry.id: entry for path in checks for entry in read_entries(path)}
     entries = [
@@ -240,7 +241,7 @@ def collect(ledger: Iterable[Claim], checks: Iterable[Path], output: Path) -> li
 
 @dataclass(frozen=True)
 class Verdict:
-    """How the ledger came out."""
+    """Result of the ledger."""
 
     reproduced: int
     deviates: int
@@ -248,7 +249,7 @@ class Verdict:
     unexpected: tuple[Entry, ...]
 
     def __str__(self) -> str:
-        """Return the last lines of a run: the counts, and every surprise."""
+        """Return the last lines of a run: the counts, and every unexpected status."""
         lines = [
             f"claims: {self.reproduced} reproduced, {self.deviates} deviating, "
             f"{self.not_testable} not testable"

@@ -13,7 +13,7 @@ from gearmesh.reproduction.figures.canvas import WIDTH, V, empty, styled
 from gearmesh.reproduction.figures.orbit import closed, last_periods, switches
 
 SPACING = 0.02
-"""Least distance in ν_s between two orbits, so that they can be told apart."""
+"""Least distance in ν_s between two orbits, so that they can be distinguished."""
 
 TURNING_POINTS_WITHOUT_LOOP = 2
 """A plain orbit turns twice a period; a loop adds two turning points."""

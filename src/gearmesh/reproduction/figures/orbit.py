@@ -50,7 +50,7 @@ def scale(dataset: xr.Dataset) -> Scale:
 
 
 def present(dataset: xr.Dataset, variants: Iterable[str], variable: str) -> list[str]:
-    """Return those of `variants` that `dataset` has at least one value of `variable` for."""
+    """Return the `variants` for which `dataset` has at least one value of `variable`."""
     known = [name for name in variants if name in dataset["variant"].values]
     return [name for name in known if bool(dataset[variable].sel(variant=name).notnull().any())]
 
@@ -122,8 +122,8 @@ def switches(course: xr.Dataset) -> tuple[np.ndarray, np.ndarray]:
     Returns
     -------
     tuple of ndarray
-        Points A, where C_min gives way to C_max (a pair of teeth comes into mesh), and
-        points B, where C_max gives way to C_min. The loops of the paper melt into B.
+        Points A, where C_min gives way to C_max (a pair of teeth comes into mesh), and points B,
+        where C_max gives way to C_min. The loops of the paper shrink to B.
     """
     stiffness = course["stiffness"].values
     step = stiffness - np.roll(stiffness, 1)

@@ -1,8 +1,8 @@
 """Colours and markers: the regions of the mesh and the response curves of Tab. 1.
 
-Blue and vermilion can be told apart by colour-blind readers, and the paper's symbols can be told
-apart in print without colour. The regions have the paper's colours white, yellow and red. They are
-pale, because curves are drawn over them, and differ in lightness.
+Colour-blind readers can distinguish blue and vermilion, and the paper's symbols can be
+distinguished in print without colour. The regions have the paper's colours white, yellow and red.
+They are pale, because curves are drawn over them, and differ in lightness.
 """
 
 from dataclasses import dataclass
@@ -22,7 +22,7 @@ RED = "#d5501a"
 
 @dataclass(frozen=True, slots=True)
 class Look:
-    """Look of the response curves with damping in one place.
+    """Style of the response curves with damping in one place.
 
     Attributes
     ----------
@@ -54,4 +54,4 @@ LOOKS = {
     "both": Look("×", "material and lubricant damping", "x", INK, True, 3.8),
     "lubricant": Look("•", "lubricant damping", "o", RED, False, 1.9),
 }
-"""Looks by the second word of the variant's name (``c-lubricant``)."""
+"""Styles by the second word of the variant's name (``c-lubricant``)."""

@@ -3,11 +3,11 @@
 A step ends at the first of: a jump of C(t) or gamma(t), a boundary of the mesh periods, a turning
 point of y, the level of y that ends the regime, a change of a sign in eq. (6), the end of a spell
 of sticking, the length that the tolerance allows. Turning points come first: up to the first one
-y is monotone, so its end value tells whether it passes a level, and no touch of a level is lost.
+y is monotone, so its end value shows whether it passes a level, and no touch of a level is missed.
 
 What acts after an event follows from discrete facts, never from how close a number is to 0. The
 event makes the quantity that located it exactly 0 (`series.MODE`); the sign of the first
-coefficient of its series that does not vanish says where it goes from there. A quantity that has
+coefficient of its series that does not vanish shows where it goes from there. A quantity that has
 the wrong sign at the start of a step, left over by rounding, counts as such a 0 too. Only a motion
 as small as the rounding errors themselves, of a mesh at rest, has no direction and no extrema.
 """
@@ -75,12 +75,12 @@ def _first_sign(case, segment, mode, fourier, series):
 def _settle_direction(case, segment, mode, fourier, series, rest, extrema, summary):
     """Find the direction of motion and the regime, and record an extremum where y has turned."""
     if mode.direction * series[V, 0] < 0.0:
-        # The turning point just passed, but for rounding.
+        # The turning point that was just passed; rounding has left its velocity off 0.
         mode.turns = True
         series[V, 0] = 0.0
     now = np.sign(series[V, 0])
     if abs(series[V, 0]) < rest:
-        # With y' damping vanishes, and the acceleration does not depend on the direction.
+        # Damping vanishes with y', so the acceleration does not depend on the direction.
         expand(case, segment, mode, fourier, series, 2)
         if now == 0.0:
             now = np.sign(series[V, 1])
@@ -102,7 +102,7 @@ def _settle_direction(case, segment, mode, fourier, series, rest, extrema, summa
 
 @inner
 def _choose_step(case, series, remaining):
-    """Return the step for which the last two terms stay below the tolerance, to the next stop."""
+    """Return the step, up to `remaining`, for which the last two terms are below the tolerance."""
     step = min(remaining, case.longest_step)
     for k in range(case.order - 1, case.order + 1):
         size = abs(series[Y, k])
@@ -164,7 +164,7 @@ def _find_event(case, segment, mode, state, step, series, rest, scaled, table):
 
 @inner
 def _advance(case, mode, state, series, duration):
-    """Move the state along the series; forget what was exactly 0 before."""
+    """Move the state along the series, and clear the marks of what was exactly 0 before."""
     if mode.time + duration == mode.time:
         return
     for i in range(6):
@@ -175,7 +175,7 @@ def _advance(case, mode, state, series, duration):
 
 @inner
 def _follow(case, segment, mode, state, event, summary):
-    """Change what the event changes."""
+    """Apply the changes of an event."""
     if event == SEGMENT_ENDED:
         mode.time = segment.end
     elif event == TURNED:
@@ -206,7 +206,7 @@ def _pass_boundary(case, mode, state, waves, deviation, series, strobes, summary
 
 @inner
 def _start(case, mode, state, waves, deviation, series, strobes, summary):
-    """Write the strobe at the start; set the branches of all laws there if none are known."""
+    """Write the first stroboscopic point; set the branches of all laws if none are known."""
     begin(case, mode, state, waves, deviation, series)
     y = series[Y, 0]
     strobes[0, 0] = y
@@ -237,7 +237,7 @@ def run(
     summaries,
     most_turns,
 ):
-    """Integrate one run, or go on with it.
+    """Integrate one run, or continue it.
 
     Parameters
     ----------

@@ -22,7 +22,7 @@ _WEIGHTS = 0.5 * _WEIGHTS
 
 @inner
 def take_value(summary, y):
-    """Let y_max and y_min include `y`."""
+    """Update y_max and y_min with `y`."""
     summary.y_max = max(summary.y_max, y)
     summary.y_min = min(summary.y_min, y)
 

@@ -17,7 +17,8 @@ MAX_DEGREE = 28
 NEVER = 2.0
 """What `first_change` returns when the sign does not change in <0; 1>."""
 
-# Halvings after which two roots closer than rounding can tell apart count as none.
+# Number of halvings. Roots that are closer than the last half cannot be separated: a pair counts as
+# none.
 _DEPTH = 44
 
 TABLE_SHAPE = (_DEPTH + 3, MAX_DEGREE + 1)

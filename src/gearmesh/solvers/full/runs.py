@@ -27,7 +27,7 @@ from gearmesh.solvers.full.series import CASE, CONTINUED, MODE, SEGMENT
 from gearmesh.solvers.response import EXTREMUM, LOOSENING, Companion, Response, Samples, assemble
 
 _EXTREMA_PER_PERIOD = 64
-# Steps between two returns to Python, which sees an interruption then: some 0.1 s.
+# Steps between two returns to Python, where an interruption is noticed: some 0.1 s.
 _MOST_TURNS = 10_000
 
 
@@ -166,13 +166,13 @@ class _Run:
 
     @property
     def rotation_drift(self) -> float:
-        """What (phi_3 - phi_2)/2 has gained, in rad."""
+        """Change of (phi_3 - phi_2)/2 over the run, in rad."""
         gained = self.state - self.start
         return 0.5 * float(gained[ROTATION_3] - gained[ROTATION_2]) / self.problem.base_radius
 
 
 def _mode(problem: Problem) -> np.ndarray:
-    """Return where the run stands at its start, with the branches of a run before it."""
+    """Return the initial mode of a run, with the branches of the run that it continues."""
     mode = np.zeros(1, MODE)
     state = problem.initial_state
     branches = state.branches_for(problem) if state and state.coordinates else None

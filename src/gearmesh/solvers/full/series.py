@@ -85,13 +85,13 @@ MODE = np.dtype(
         ("released", np.bool_),
     ]
 )
-"""Where a run stands: `time` since the boundary of the period, and the branch of every law.
+"""State of a run within its period: `time` since its boundary, and the branch of every law.
 
-`stage` tells a run that has not begun from one whose branches are known, and from one under way.
+`stage` states whether the run is new, is continued with known branches, or is under way.
 `direction` is the sign of y' (0 before the first motion) and `level` the value of y passed last.
-`turns`, `on_level` and `on_bracket` say that y', y - `level` and the bracket of eq. (6) are 0
-exactly, whatever rounding has left of them in the coordinates; `released`, that sticking has just
-ended.
+`turns`, `on_level` and `on_bracket` state that y', y - `level` and the bracket of eq. (6) are
+exactly 0, whatever rounding has left of them in the coordinates. `released` states that sticking
+has just ended.
 """
 
 NEW, CONTINUED, UNDER_WAY = range(3)
@@ -189,7 +189,7 @@ def _extend_relative_motion(case, series, k, mean_angle):
 
 @inner
 def begin(case, mode, state, waves, deviation, series):
-    """Write what the series start from: the state, y and y', and the prescribed functions."""
+    """Write the first terms of the series: the state, y and y', and the prescribed functions."""
     angle = 2.0 * np.pi * (mode.time / case.period + case.initial_phase)
     series[DEVIATION] = 0.0
     if deviation.shape[0]:

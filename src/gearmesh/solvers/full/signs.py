@@ -17,7 +17,7 @@ REST = 32.0 * np.finfo(np.float64).eps
 """Motion of less than this many times the rounding of the coordinates is rest."""
 
 BRACKET_TURNED, SLIP, RELEASED = 4, 5, 6
-"""Events that change a sign: the bracket of eq. (6) turns, sliding stops, sticking ends."""
+"""Events that change a sign: the bracket of eq. (6) turns, sliding ends, sticking ends."""
 
 _holding_force = inner(holding_force)
 
@@ -45,7 +45,7 @@ def _settle_slip(case, segment, mode, fourier, state, series):
     available = case.friction * elastic * segment.gamma * mode.run_out_sign
     opposes = available > 0.0
     if mode.on_level and mode.regime != CONTACT_LOSS:
-        # The elastic force is 0 only now; where y goes, it goes.
+        # The elastic force is 0 at this moment only; its sign afterwards is that of y'.
         opposes = mode.direction * segment.gamma * mode.run_out_sign > 0.0
     needed = needed_force(case, state)
     if opposes and abs(needed) <= available:
@@ -98,7 +98,7 @@ def first_of_signs(case, segment, mode, state, step, series, scaled, table):
         for k in range(degree + 1):
             row[k] = (k + 1) * (series[Z_3, k + 1] - series[Z_2, k + 1])
         if row[0] == 0.0 and mode.slip_sign * row[1] < 0.0:
-            # The end of sticking: friction still balances the bearings, but for rounding.
+            # Sticking has just ended: up to rounding, friction still balances the bearings.
             row[1] = 0.0
         slips = first(row, degree, step, mode.slip_sign, scaled, table)
         return (slips, SLIP) if slips < end else (end, event)

@@ -6,6 +6,6 @@ rounding), so a lane's result depends neither on the number of lanes nor on its 
 ensembles equal single runs bit for bit.
 
 The package holds only what the solver needs, and imports numba and llvmlite alone. A compiled
-function learns the number of lanes from an argument of lane type (``like``), made by
+function takes the number of lanes from an argument of lane type (``like``), made by
 `operations.zeros8` or `operations.zeros1`.
 """

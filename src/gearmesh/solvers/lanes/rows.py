@@ -13,8 +13,8 @@ POINTER = types.CPointer(types.float64)
 def pointer_to(typingctx, array):
     """Return where a float64 array begins.
 
-    Functions that pass a workspace on by its pointer count no references, which takes as long as
-    dozens of operations; the caller has to keep the array.
+    A function that takes a workspace as a pointer counts no references, which would take as long as
+    dozens of operations. The caller has to keep the array alive.
     """
 
     def codegen(context, builder, sig, args):

@@ -90,8 +90,8 @@ def unrolled(function):
     """Compile `function(rows)` to straight-line code, called as ``compiled(like, work)``.
 
     `function` runs once, at compile time; its loops and lists vanish, and what remains are the
-    operations on the rows of the workspace that it reads and writes. A recurrence whose loops are
-    short and depend on each other is several times faster so.
+    operations on the rows of the workspace that it reads and writes. This makes a recurrence with
+    short loops that depend on each other several times faster.
     """
 
     @intrinsic

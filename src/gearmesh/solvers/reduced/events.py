@@ -1,7 +1,7 @@
 """The first event of a step: a turning point of y, or the level that ends the regime.
 
-Both are found on the Taylor polynomials of a step, in all lanes at once. Each lane watches one
-function for its first change of sign:
+Both are found on the Taylor polynomials of a step, in all lanes at once. In each lane one function
+is watched for its first change of sign:
 
 - y itself, measured from the level where the flanks part, while they touch, turning points do not
   count (before the kept revolutions) and do not bend the damping (no |v| v);
@@ -139,7 +139,7 @@ def locate(like, work, wanted, turns, side, level, low, high, at):
     """Return where v, or where `turns` is not set y - `level`, passes 0, and y there.
 
     Halley's method from `at`, inside the bracket; side times the function falls. Newton's step
-    decides where it ends: beside a double root Halley's is small far from any root.
+    decides when it ends: near a double root Halley's can be small far from any root.
     """
     zero = spread(like, 0.0)
     active = wanted

@@ -1,4 +1,4 @@
-"""What the sweep measures on the way: extrema, the integral of y^2 and samples."""
+"""Quantities that the sweep measures during a run: extrema, the integral of y^2 and samples."""
 
 import numpy as np
 
@@ -94,7 +94,7 @@ def sample(work, width, lane, run, samples, per_period):
     since_boundary = get(work, width, SINCE_BOUNDARY, lane)
     since_stop = get(work, width, SINCE_SEGMENT, lane)
     taken = get(work, width, TAKEN, lane)
-    # Which samples belong to a segment is a matter of counting, not of rounding.
+    # The samples of a segment are found by counting, so rounding has no effect.
     last = int(run.sample_end[segment])
     if since_stop > 0.0:
         first = int(np.ceil(since_boundary / spacing))

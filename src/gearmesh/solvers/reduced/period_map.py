@@ -40,7 +40,7 @@ _propagate = persistent(_build_propagation)
 
 @dataclass(frozen=True, slots=True)
 class Passage:
-    """What the motion over whole mesh periods does.
+    """The motion over whole mesh periods.
 
     Attributes
     ----------
@@ -80,7 +80,7 @@ def passage(
     samples_per_period: int = 0,
     longest_angle: float = LONGEST_ANGLE,
 ) -> Passage:
-    """Return what the motion from a state does over whole mesh periods.
+    """Return the motion from a state over whole mesh periods.
 
     Parameters
     ----------

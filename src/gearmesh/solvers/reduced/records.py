@@ -1,4 +1,4 @@
-"""What the compiled sweep takes of a run, and what it leaves; a run's way in and out of a lane."""
+"""Input and output of the compiled sweep, and how a run enters and leaves a lane."""
 
 import numpy as np
 
@@ -65,7 +65,7 @@ RUN = np.dtype(
         ("log_tolerance", np.float64),
     ]
 )
-"""One run as the kernel takes it, times in tau_s; whole numbers too are kept as floating ones.
+"""One run as the kernel takes it. Times are in tau_s, and whole numbers are stored as floats.
 
 For each segment of a mesh period: its length, C/C_s, the share of the elastic force that friction
 adds to u'', and the number of the first sample of the period behind it. `start` is (y, y', b, b'),
@@ -92,7 +92,7 @@ def get(work, width, row, lane):
 
 @inner
 def take_value(summary, y):
-    """Let y_max and y_min include `y`."""
+    """Update y_max and y_min with `y`."""
     summary.y_max = max(summary.y_max, y)
     summary.y_min = min(summary.y_min, y)
 
@@ -146,7 +146,7 @@ def begin(work, width, lane, runs, summaries, strobes, index):
 
 @inner
 def idle(work, width, lane):
-    """Leave the lane without a run: nothing moves in it, and it never ends."""
+    """Mark the lane as empty: nothing moves in it, and it never ends."""
     for row in range(N_ROWS):
         put(work, width, row, lane, 0.0)
     put(work, width, REGIME, lane, NORMAL_MESH)

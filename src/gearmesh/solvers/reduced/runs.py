@@ -23,9 +23,9 @@ from gearmesh.solvers.reduced.workspace import MAX_SEGMENTS, N_ROWS
 from gearmesh.solvers.response import EXTREMUM, LOOSENING, Companion, Response, assemble
 
 _EXTREMA_PER_PERIOD = 64
-# Samples that are closer to a switch than rounding can tell are on it.
+# Samples that are as close to a switch as this, which is rounding, are on it.
 _ON_EDGE = 1e-9
-# Steps between two returns to Python, which sees an interruption then: some 0.1 s.
+# Steps between two returns to Python, where an interruption is noticed: some 0.1 s.
 _MOST_TURNS = 100_000
 
 
@@ -48,7 +48,7 @@ def _build_scalar_sweep(key: str, cache: bool) -> Callable[..., bool]:
 
 
 _vector_sweep = persistent(_build_vector_sweep)
-# A run alone keeps one lane busy; there scalar instructions are faster, and as exact.
+# A single run fills one lane only; scalar instructions are then faster, and as exact.
 _scalar_sweep = persistent(_build_scalar_sweep)
 
 
@@ -110,13 +110,13 @@ def integrate(
 def _runs(
     problems: Sequence[Problem], tolerance: float, samples_per_period: int, estimate_errors: bool
 ) -> np.ndarray:
-    """Return the runs in the form that the sweep takes, their companions behind them."""
+    """Return the runs in the form that the sweep takes, followed by their companions."""
     n = len(problems)
     rows = [_run(problem, tolerance, samples_per_period) for problem in problems]
     runs = np.array(rows + rows if estimate_errors else rows).view(RUN)[:, 0]
     companions = runs[n:]
     companions["log_tolerance"] = math.log2(tolerance * LOOSENING)
-    # Displaced in the rotation, they show a sensitive orbit even where events decide the steps.
+    # The displacement of the rotation reveals a sensitive orbit even if events decide the steps.
     start = companions["start"]
     start[:, 0] = ((start[:, 0] - start[:, 2]) + tolerance) + start[:, 2]
     companions["regime"] = regime_of(start[:, 0], companions["backlash"])
@@ -178,7 +178,7 @@ def _start(problem: Problem) -> tuple[tuple[float, float, float, float], float, 
 
 
 def _sample_ends(parts: tuple[Segment, ...], per_period: int) -> list[int]:
-    """Return the number of the first sample behind each segment; one at its end is behind it."""
+    """Return the number of the first sample after each segment; one at its end is after it."""
     return [math.ceil(part.end * per_period - _ON_EDGE) for part in parts]
 
 
@@ -214,7 +214,7 @@ def _final_state(problem: Problem, summary: Mapping[str, Any]) -> State:
 
 
 class _Samples:
-    """A time course like `response.Samples`; all but y, v and a is computed when asked for."""
+    """A time course like `response.Samples`; all but y, v and a is computed on demand."""
 
     def __init__(self, problem: Problem, rows: np.ndarray, per_period: int) -> None:
         self._problem = problem

@@ -1,10 +1,10 @@
 """The compiled sweep: many runs of the reduced system, a lane each, from event to event.
 
-Every lane goes its own way: its steps end at its own switches, pitch points, boundaries, turning
-points and contact crossings, and it takes the next run of the list as soon as it has finished one.
-The arithmetic of a step (`taylor`, `events`) and what follows an event (`transitions`) is common
-to all lanes. What is recorded of a run (`measures`), and where it begins and ends (`records`), is
-treated lane by lane.
+The lanes are independent: the steps of each end at its own switches, pitch points, boundaries,
+turning points and contact crossings, and it takes the next run of the list as soon as it has
+finished one. The arithmetic of a step (`taylor`, `events`) and what follows an event
+(`transitions`) is common to all lanes. What is recorded of a run (`measures`), and where it begins
+and ends (`records`), is treated lane by lane.
 """
 
 from gearmesh.model.contact import CONTACT_LOSS, INVERSE_MESH
@@ -53,7 +53,7 @@ from gearmesh.solvers.reduced.workspace import (
 
 PENDING, ENDED = WIDEST, WIDEST + 1
 PROGRESS = WIDEST + 2
-"""Size of the array of whole numbers in which a sweep that is interrupted leaves its place.
+"""Size of the array of whole numbers in which the progress of an interrupted sweep is kept.
 
 First the index of the run in each lane, -1 for none; then the next run of the list, and the lanes
 whose runs are over, as bits.
@@ -145,7 +145,7 @@ def sweep(
         Of the first m runs; a row has room for `WIDEST` more than it holds.
     samples_per_period : int
     progress : ndarray of int64, shape (PROGRESS,)
-        Where the sweep stands. At its start: no runs in the lanes, and all of them ended.
+        Progress of the sweep. Before the first call: no runs in the lanes, and all of them ended.
     most_turns : int
         Steps of all lanes after which the sweep returns, to be called again.
 

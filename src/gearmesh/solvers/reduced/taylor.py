@@ -56,7 +56,7 @@ REST = 1e-14
 
 @inner(inline="never")
 def direction(like, work):
-    """Return the sign of v, where v rests that of the acceleration, where both rest the last."""
+    """Return the sign of v, or of the acceleration if v is 0, or the last sign if both are 0."""
     v = load(like, work, Y + 1)
     elastic = load(like, work, ELASTIC) * (load(like, work, Y) - load(like, work, OFFSET))
     push = load(like, work, LOAD) - elastic + load(like, work, FRICTION) * elastic
@@ -77,7 +77,7 @@ def direction(like, work):
 def _inner_product(left, right, k):
     """Return the k-th coefficient of a product of series less its two outermost terms.
 
-    The newest coefficients come last: only they make the sum wait.
+    The newest coefficients are added last, so the sum waits for them only.
     """
     total = None
     for i in sorted(range(1, k), key=lambda i: abs(2 * i - k)):
@@ -138,7 +138,7 @@ class _Damping:
 def _expand(rows, powers):
     """Write the series from the state, with damping of the given powers.
 
-    From v_k to v_k+1 it is one multiply-add: the processor works on all else while it waits.
+    From v_k to v_k+1 takes one multiply-add; the processor does all other work meanwhile.
     """
     damping = _Damping(rows, powers)
     y, v, b, rate = [rows[Y]], damping.v, [rows[B]], [rows[B + 1]]  # rate is b'
@@ -193,8 +193,8 @@ def choose_step(like, work):
     """Write the step at which the first terms left out reach the tolerance, within the segment.
 
     Each of the last terms of v and b' gives a radius of convergence, for motion of the size of
-    y_st (Jorba and Zou). The step leaves the term of degree ORDER, the first that v lacks, at the
-    tolerance.
+    y_st (Jorba and Zou). The step makes the term of degree ORDER, the first missing one of v, equal
+    to the tolerance.
     """
     room = load(like, work, LOG_TOLERANCE) * (1.0 / ORDER) - COARSENESS
     tiny = spread(like, 1e-290)

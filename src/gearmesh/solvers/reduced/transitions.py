@@ -1,7 +1,7 @@
-"""What follows an event: the next regime behind a level, the next segment of the mesh period.
+"""Changes after an event: the next regime beyond a level, the next segment of the mesh period.
 
-One instruction treats all lanes; masks select those in which the event has happened. What a lane
-finds in its rows afterwards depends on its regime, its segment and its run alone.
+One instruction treats all lanes; masks select those in which the event has happened. The rows of a
+lane afterwards depend only on its regime, its segment and its run.
 """
 
 import numpy as np

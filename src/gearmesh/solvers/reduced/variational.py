@@ -1,14 +1,15 @@
-"""The reduced equations of motion with their variational equations, from event to event.
+"""Integration of the reduced equations of motion and their variational equations, event by event.
 
 The equations are those of `gearmesh.solvers.reduced.taylor`, with y = u + b, v = y' and
 
     y'' = 1 + g E - (1 + 2 mu) N - 2 zeta w b' - w^2 b,    b'' = -2 mu N - 2 zeta w b' - w^2 b.
 
-A deviation (dy, dv, db, db') of the state obeys the linear equations in which c dy stands for E
-and c dy + D dv for N, with D = k_1 + 2 k_2 |v| + 3 k_3 v^2. The Taylor series of the motion and of
-the deviations in the four directions of the state are computed together, so the Jacobian of the
-flow is as accurate as the flow. Contact events change the vector field, and with it the
-deviations (`saltation`); jumps of C(t) and gamma(t) happen at fixed times and do not.
+A deviation (dy, dv, db, db') of the state obeys the linearised equations: without the constant 1,
+with c dy in place of E and c dy + D dv in place of N, where D = k_1 + 2 k_2 |v| + 3 k_3 v^2. The
+Taylor series of the motion and of the deviations in the four directions of the state are computed
+together, so the Jacobian of the flow is as accurate as the flow. At a contact event the vector
+field changes at a time that depends on the state, so the deviations jump (`saltation`). C(t) and
+gamma(t) jump at fixed times, so the deviations stay continuous there.
 """
 
 import numpy as np
@@ -33,7 +34,7 @@ COMPLETE, TOO_MANY_STEPS, TOO_MANY_EVENTS, DIVERGED = range(4)
 """Outcomes of `propagate`."""
 
 _REST = 1e-14  # velocities and accelerations below this are rounding errors of a body at rest
-_NARROWEST = 1e-8  # share of a step in which two roots are not told apart
+_NARROWEST = 1e-8  # share of a step; roots closer than this are not separated
 _SAMPLE_EDGE = 1e-9  # share of the sampling interval
 _MOST_STEPS_PER_SEGMENT = 1000
 _FARTHEST = 1e9
@@ -42,7 +43,7 @@ _FORCE_PLACES = 8
 
 @inner
 def saltation(before, after, gradient):
-    """Return the saltation matrix of an event at a fixed place in state space.
+    """Return the saltation matrix of an event on a fixed surface in state space.
 
     Parameters
     ----------
@@ -62,7 +63,7 @@ def saltation(before, after, gradient):
 
 @inner
 def vector_field(state, direction, c, offset, g, law, bearings):
-    """Return the rates of (y, v, b, b') with the branches of the laws that are given.
+    """Return the rates of (y, v, b, b') for the given branches of the laws.
 
     Parameters
     ----------
@@ -92,8 +93,8 @@ def vector_field(state, direction, c, offset, g, law, bearings):
 def _expand(series, slope, square, direction, c, offset, g, law, bearings):
     """Write the series of the motion (column 0) and of its deviations (columns 1 to 4).
 
-    `series` has shape (5, 4, ORDER + 1), its coefficients of degree 0 are given. `slope` receives
-    the series of D.
+    `series` has shape (5, 4, ORDER + 1); its coefficients of degree 0 are input. The series of D is
+    written to `slope`.
     """
     two_mu, support, damped = bearings[0], bearings[1], bearings[2]
     share = 1.0 + two_mu
@@ -186,8 +187,8 @@ def root_between(polynomial, low, high):
 def first_root(polynomial, end):
     """Return the first change of sign of a polynomial in (0; end), or infinity.
 
-    A bound of the second derivative proves that a piece of the interval holds no root, or one at
-    most; other pieces are halved. A root at 0 itself does not count.
+    A bound of the second derivative proves that a piece of the interval holds no root, or at most
+    one. Other pieces are halved. A root at 0 itself does not count.
     """
     first = 0
     while first < polynomial.size - 1 and polynomial[first] == 0.0:
@@ -225,7 +226,7 @@ def _touching(regime, backlash, c):
 
 @inner
 def _direction(state, rates):
-    """Return the sign of v, or where v is 0 that of v'."""
+    """Return the sign of v, or that of v' if v is 0."""
     leading = state[1] if state[1] != 0.0 else rates[1]
     return -1.0 if leading < 0.0 else 1.0
 
@@ -267,7 +268,7 @@ def propagate(
     bearings : ndarray, shape (3,)
         2 mu, w^2, 2 zeta w.
     visits : int
-        Segments to pass; after the last segment of the period follows its first.
+        Number of segments to pass; the first segment of the period follows the last one.
     longest, tolerance : float
         Bounds of a step and of its relative error.
     state : ndarray, shape (4,)
@@ -275,7 +276,7 @@ def propagate(
     jacobian : ndarray, shape (4, 4)
     events : ndarray, shape (room, EVENT_SIZE)
     samples : ndarray, shape (n, 4)
-        Receives y, v, y'' and the regime at `per_period` times in a mesh period.
+        Filled with y, v, y'' and the regime at `per_period` times in a mesh period.
 
     Returns
     -------

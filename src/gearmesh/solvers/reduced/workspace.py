@@ -1,4 +1,4 @@
-"""The workspace of the sweep: what each lane knows of its run, and of its place in it.
+"""The workspace of the sweep: the data of the run in each lane, and its progress.
 
 It is one flat float64 array of rows, one element of a row for each lane; the names below are row
 numbers. The regime, the segment of the mesh period and whether a period is kept are whole numbers
