@@ -7,14 +7,14 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from gearmesh.data import paths
+from gearmesh.data.paths import Places
 from gearmesh.errors import InputError
 from gearmesh.model.variants import VARIANTS
 from gearmesh.study.loading import load_study
 
 
 def files(study):
-    return {paths.case_file(case.variant.name, case.nu) for case in study.cases}
+    return {Places(study.name).case(case.variant.name, case.nu) for case in study.cases}
 
 
 def test_the_study_of_the_paper_has_every_variant_on_its_grid(study):

@@ -172,8 +172,8 @@ def test_values_in_nested_lists_may_be_relative(pair):
         ("backlash", "y_st", "not a quantity"),
         ("backlash", "-1 y_st", "out of range; allowed is 1e-06 to 100 mm"),
         ("backlash", "1e5 y_st", "out of range; allowed is 1e-06 to 100 mm"),
-        ("static_deflection", "2 y_st", "static_deflection: found '2 y_st'; 'y_st' cannot stand"),
-        ("static_deflection", "2 m_red", "static_deflection: found '2 m_red'; 'm_red' cannot"),
+        ("static_deflection", "2 y_st", "static_deflection: found '2 y_st'; 'y_st' is not"),
+        ("static_deflection", "2 m_red", "static_deflection: found '2 m_red'; 'm_red' is not"),
         ("reduced_mass", "2 m_red", "reduced_mass: found '2 m_red'; 'm_red' is not allowed here"),
     ],
 )  # fmt: skip

@@ -126,7 +126,7 @@ def record(response: Response, pair: Pair) -> Record:
     }
     columns: Record = {}
     for field, value in _values(response):
-        array = np.asarray(value, field.kind)
+        array = np.asarray(field.fill if value is None else value, field.kind)
         if field.dimension == "boundary" and array.size == 0:
             array = np.full(boundaries(pair), np.nan)  # of a run that failed
         if field.relative:

@@ -21,7 +21,6 @@ def samples(study: Study, places: Places, design: str, index: str) -> list[Path]
     warnings.filterwarnings("ignore", category=RuntimeWarning)
     settings = load_settings(layout.SETTINGS)
     stated = settings.designs[design]
-    assert stated.around is not None  # a box belongs to a focused design
     points = unit_points(stated)
     if stated.around:
         points = boxes.read_box(layout.box_file(places, design)).fill(points)
