@@ -113,7 +113,7 @@ def test_results_that_cannot_be_written_are_told(fresh):
     with mounted(fresh.path("results"), "size=1m,ro"):
         finished = fresh.run("data")
         assert finished.returncode != 0
-        assert "results: cannot be written" in finished.stdout
+        assert "gearmesh: error: results/tiny: cannot be written" in finished.stdout
 
 
 WRONG = {
@@ -152,6 +152,7 @@ def test_a_wrong_configuration_is_told_before_anything_is_written(fresh, text):
     ],
 )
 def test_a_slip_elsewhere_is_told_like_one_in_the_study(fresh, name, text):
+    fresh.config = "config/smoke.yaml"  # it has a ledger
     fresh.path(name).write_text(f"{text}\n")
     assert refusal(fresh).startswith(f"gearmesh: error: {name}: ")
     assert not fresh.path("results").exists()
@@ -238,9 +239,15 @@ def test_an_unwritable_compilation_cache_changes_nothing(tiny, fresh, tmp_path):
 
 
 def test_a_case_that_fails_stops_nothing_else(fresh):
-    """Damping so strong that no step is small enough."""
-    stated = "title: A few cases\ndamping: 1e6 N s/mm\ndamping_length: 1e-6 mm"
-    fresh.edit("config/tiny.yaml", "title: A few cases", stated)
+    """Masses so small, and damping so strong, that no step is small enough."""
+    stated = {
+        "damping": "1e6 N s/mm",
+        "damping_length": "1e-6 mm",
+        "reduced_mass": "1e-9 N s^2/mm",
+        "static_deflection": "10 mm",
+    }
+    lines = "".join(f"{name}: {value}\n" for name, value in stated.items())
+    fresh.edit("config/tiny.yaml", "title: A few cases\n", f"title: A few cases\n{lines}")
     finished = fresh.run("data")
     assert finished.returncode == 0, finished.stdout
     assert "not integrated" in finished.stdout

@@ -2,7 +2,7 @@
 
 A job runs again when its manifest does not hold: when a file that it wrote or read is missing or
 was changed, or when it was made of something else. The manifests are checked when Snakemake starts
-(`Plan.holding`), so neither the times of files nor Snakemake's own records matter.
+(`Plan.check`), so neither the times of files nor Snakemake's own records matter.
 """
 
 import hashlib
@@ -11,7 +11,7 @@ import shlex
 import sys
 import time
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
 
@@ -44,12 +44,12 @@ class Plan:
     ----------
     study : Study
         What its file states.
-    main : bool
-        Whether this process plans the run; jobs on a cluster load the Snakefile too.
+    holding : frozenset of str, optional
+        The jobs whose manifest holds, see `check`; without it no manifest counts.
     """
 
     study: Study
-    main: bool = True
+    holding: frozenset[str] | None = None
 
     @cached_property
     def places(self) -> Places:
@@ -99,9 +99,8 @@ class Plan:
             return []
         return [self.places.again]
 
-    @cached_property
-    def holding(self) -> frozenset[str] | None:
-        """The jobs whose manifest holds; None if another process or another run is in charge.
+    def check(self) -> frozenset[str] | None:
+        """Return the jobs whose manifest holds, None if another run is in charge.
 
         The reasons why other manifests do not hold are printed.
 
@@ -110,8 +109,6 @@ class Plan:
         InputError
             If the folder of results cannot be written.
         """
-        if not self.main:
-            return None
         with locks.alone(self.places) as undisturbed:
             if not undisturbed:  # `locks.begin_run` will report it
                 return None
@@ -260,7 +257,7 @@ def load(
     configfiles : sequence
         Files of ``--configfile``, which names a study as well.
     main : bool
-        See `Plan`.
+        Whether this process plans the run; jobs on a cluster load the Snakefile too.
 
     Raises
     ------
@@ -280,11 +277,11 @@ def load(
             f"the code would come from {provenance.PACKAGE}, not from this folder; "
             "run 'make reproduce', which sets up an environment here"
         )
-    plan = Plan(load_study(str(path)), main)
+    plan = Plan(load_study(str(path)))
     load_settings(layout.SETTINGS)  # a mistake in it, or in the ledger, is reported before all jobs
     if plan.study.claims:
         load_ledger(plan.study.claims)
-    return plan
+    return replace(plan, holding=plan.check()) if main else plan
 
 
 def prefix(plan: Plan) -> str:
