@@ -154,7 +154,7 @@ def test_a_run_that_was_stopped_goes_on(small):
     ):
         (small.folder / made).unlink()
     planned = small.plan("identify")
-    assert planned >= {"samples-natural-0", "all_samples", "identified"}
+    assert planned >= {"samples-natural-000", "all_samples", "identified"}
     assert not [job for job in planned if job.startswith(("samples-survey", "samples-truth"))]
 
 
