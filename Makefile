@@ -27,9 +27,8 @@ help: ## show this list
 	@sed -nE 's/^([a-z-]+):.*## (.*)/make \1\t\2/p' $(MAKEFILE_LIST) | expand -t 18
 
 reproduce: $(STAMP) ## the paper: cases, datasets, figures, ledger and report
-	@$(SNAKEMAKE); status=$$?; \
-	if [ -e results/paper/manifests/ledger.sha256 ]; then cat results/paper/verdict.txt; fi; \
-	exit $$status
+	@$(SNAKEMAKE)
+	@cat results/paper/verdict.txt
 
 test: $(STAMP) ## the whole test suite
 	$(BIN)/python -m pytest -n 2 --dist loadfile --no-loadscope-reorder

@@ -20,6 +20,22 @@ settings.load_profile("gearmesh")
 
 ROOT = Path(__file__).parents[1]
 
+SLOW = (
+    *("docs", "dynamics", "identification/test_samples", "interface", "reproduction/test_figures"),
+    *("solvers/test_continuation", "solvers/test_full", "solvers/test_hard", "solvers/test_peers"),
+    *("solvers/test_reduced", "solvers/test_series", "solvers/test_simulation"),
+    *("study/test_problem", "study/test_loading"),
+    *("test_commands", "test_installation", "workflow"),
+)
+"""Beginnings of the paths of tests that `make test-fast` leaves out."""
+
+
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    for item in items:
+        place = item.path.relative_to(ROOT / "tests").as_posix()
+        if place.startswith(SLOW):
+            item.add_marker(pytest.mark.slow)
+
 
 @pytest.fixture(scope="session")
 def root() -> Path:

@@ -133,7 +133,7 @@ CASES = {f"cases-{letter}" for letter in LETTERS}
 AFTER_CASES = {"datasets", *FIGURES, *END}
 EVERYTHING = {*CASES, "thresholds", "printed", *AFTER_CASES}
 STATED = {"identified_figures", *EVERYTHING}
-AFTER_THRESHOLDS = {"thresholds", *FIGURES, *END}
+AFTER_THRESHOLDS = {"thresholds", "printed", *FIGURES, *END}
 REPORTED = {"report", "hashes", "verdict"}
 
 INCREMENTS = {
@@ -154,10 +154,10 @@ INCREMENTS = {
     "datasets": ("src/gearmesh/data/datasets.py", '"""', '""" ', {*AFTER_CASES}),
     "solver": ("src/gearmesh/solvers/simulation.py", '"""', '""" ', EVERYTHING),
     "one stage": ("src/gearmesh/pipeline/stages/claims.py", '"""Check the numbers', '"""Check all',
-                  {"printed", *END}),
+                  {"printed", "ledger", *REPORTED}),
     "tolerance": ("config/paper.yaml", "tolerance: 1e-10", "tolerance: 1e-9", EVERYTHING),
-    "parameter": ("config/paper.yaml", "value: 80 um", "value: 81 um", STATED),
-    "units": ("config/paper.yaml", "value: 80 um", "value: 0.080 mm", set()),
+    "parameter": ("config/paper.yaml", "value: 8 y_st", "value: 8.1 y_st", STATED),
+    "units": ("config/paper.yaml", "value: 10 um", "value: 0.010 mm", set()),
     "step": ("config/smoke.yaml", "nu: {step: 0.05}", "nu: {step: 0.1}", {*CASES, *AFTER_CASES}),
 }  # fmt: skip
 
