@@ -36,6 +36,6 @@ rule case:
 
 use rule case as case_by_whole_path with:
     output:
-        "{root}/" + str(PLACES.case("{variant}", "{nu}")),
+        f"{{root}}/{PLACES.case('{variant}', '{nu}')}",
     log:
-        "{root}/" + str(PLACES.log("case-{variant}-{nu}")),
+        f"{{root}}/{PLACES.log('case-{variant}-{nu}')}",
