@@ -5,7 +5,7 @@ import numpy as np
 from gearmesh.model.contact import CONTACT_LOSS, INVERSE_MESH
 from gearmesh.solvers.compilation import inner
 from gearmesh.solvers.full.roots import evaluate, evaluate_with_slope
-from gearmesh.solvers.full.series import FRICTION, STIFFNESS, V, Y
+from gearmesh.solvers.full.tape import FRICTION, STIFFNESS, V, Y
 from gearmesh.solvers.response import MAXIMUM, MEASURED, MINIMUM
 
 SUMMARY = np.dtype([*MEASURED, ("samples", np.int64)])
@@ -44,7 +44,7 @@ def record_extremum(case, mode, y, extrema, summary):
 
 
 @inner
-def sample(case, segment, mode, fourier, series, until, samples, per_period, summary):
+def sample(case, mode, series, until, samples, per_period, summary):
     """Write the samples before `until`."""
     first = (mode.period - case.first_kept) * per_period
     while summary.samples - first < per_period:
@@ -56,13 +56,9 @@ def sample(case, segment, mode, fourier, series, until, samples, per_period, sum
         sample.time = mode.period * case.period + time
         sample.y = evaluate(series[Y], case.order, since)
         sample.v, sample.a = evaluate_with_slope(series[V], case.order - 1, since)
-        sample.stiffness = segment.stiffness
-        if fourier:
-            sample.stiffness = evaluate(series[STIFFNESS], case.order, since)
-        sample.friction = 0.0
-        if case.friction != 0.0:
-            sample.friction = evaluate(series[FRICTION], case.order - 2, since)
-        sample.regime = mode.regime
+        sample.stiffness = evaluate(series[STIFFNESS], case.order - 2, since)
+        sample.friction = evaluate(series[FRICTION], case.order - 2, since)
+        sample.regime = CONTACT_LOSS if mode.parted else mode.regime
         summary.samples += 1
 
 
@@ -74,7 +70,7 @@ def measure(case, mode, series, duration, summary):
         y = evaluate(series[Y], case.order, duration * _NODES[i])
         total += _WEIGHTS[i] * y * y
     summary.square_integral += total * duration
-    if mode.regime == CONTACT_LOSS:
+    if mode.regime == CONTACT_LOSS or mode.parted:
         summary.loss_time += duration
     elif mode.regime == INVERSE_MESH:
         summary.inverse_time += duration

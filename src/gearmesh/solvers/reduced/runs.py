@@ -10,7 +10,7 @@ import numpy as np
 from numba import njit
 
 from gearmesh.model.contact import CONTACT_LOSS, INVERSE_MESH, dynamic_force, regime_of
-from gearmesh.model.problem import Branches, Problem, State
+from gearmesh.model.problem import Branches, GeneralTerms, Problem, State
 from gearmesh.model.segments import Segment, segments
 from gearmesh.solvers import limits
 from gearmesh.solvers.compilation import persistent
@@ -53,7 +53,12 @@ _scalar_sweep = persistent(_build_scalar_sweep)
 
 
 def is_reducible(problem: Problem) -> bool:
-    """Return whether a problem has no run-out, profile deviation or Fourier stiffness."""
+    """Return whether a problem has equal wheels without run-out and no term beyond the paper's.
+
+    Profile deviation and a truncated series of the stiffness are such terms.
+    """
+    if problem.wheels is not None or problem.terms != GeneralTerms():
+        return False
     return not (problem.has_run_out or problem.deviation or problem.stiffness_harmonics)
 
 
