@@ -121,6 +121,7 @@ def environment() -> jinja2.Environment:
         lstrip_blocks=True,
     )
     made.filters.update(number=number, found=found, expected=expected, typeset=typeset)
+    made.filters["log10"] = math.log10
     made.globals["status_labels"] = STATUS_LABELS
     return made
 
