@@ -101,7 +101,7 @@ def _target(target: Any, tolerance: float | None) -> str:
 def typeset(text: str) -> Markup:
     """Write symbols as the paper does: ν_s with a subscript, c-material as c-□."""
     text = _VARIANT.sub(_symbol, str(escape(text)))
-    return Markup(re.sub(r"(?<=\w)_([A-Za-z0-9]+)", r"<sub>\1</sub>", text))
+    return Markup(re.sub(r"(?<=[\w;])_([A-Za-z0-9]+)", r"<sub>\1</sub>", text))
 
 
 def _symbol(match: re.Match[str]) -> str:

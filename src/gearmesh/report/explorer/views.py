@@ -26,35 +26,36 @@ _LUBRICANT, _MATERIAL = "c-lubricant", "c-material"
 TOUR = (
     Stop(
         "Below the jump",
-        "c-• at ν_s = 0.75. The orbit stays at y ≥ 0, or touches 0 for moments: the teeth stay "
-        "together. Only the oil damps in this variant, and it acts only while they are apart. The "
-        "motion therefore rings on, and fills a cloud.",
+        "c-• at ν_s = 0.75. The teeth stay together: y is positive but for moments. In this variant "
+        "only the oil damps, and it acts only while the teeth are apart. So nothing takes energy "
+        "from the motion, the run rings on after its start, and its extrema form a cloud.",
         view(_LUBRICANT, 0.75),
     ),
     Stop(
         "Above the jump",
-        "c-• at ν_s = 0.79. The teeth part once in every period, for half of the time, so the oil "
-        "damps in every period: the cloud shrinks to a single orbit, which is larger. Drag ν_s "
-        "from 0.75 to 0.79 and watch the phase plane cross the line y = 0.",
+        "c-• at ν_s = 0.79. The teeth part in every period, for half of the time (yellow). The oil "
+        "damps in every period, so the motion settles on one orbit, and that orbit is larger. Drag "
+        "ν_s to and fro across the jump at 0.77.",
         view(_LUBRICANT, 0.79),
     ),
     Stop(
-        "Both motions exist below the jump",
-        "c-• at ν_s = 0.75 again, but the run starts with the teeth apart. It ends on the large "
-        "orbit. Two motions are possible here, and the start decides between them. The jump near "
-        "0.8 is the place where the start of the study changes from one to the other.",
-        view(_LUBRICANT, 0.75, initial_displacement=-2),
+        "Two motions below the jump",
+        "c-• at ν_s = 0.75 again, with the same parameters, but this run starts with the teeth "
+        "apart (y_0 = −1). It ends on the large orbit: two motions exist here side by side, and the "
+        "start decides between them. The diagram shows where runs with this start end.",
+        view(_LUBRICANT, 0.75, initial_displacement=-1),
     ),
     Stop(
         "The start moves the jump",
-        "The same variant with another starting phase: the diagram is computed again while you "
-        "wait, and the jump lies elsewhere.",
-        view(_LUBRICANT, 0.75, initial_phase=0.6),
+        "Another starting phase, 0 in place of 0.2845, moves the jump from 0.77 to 0.745. Where the "
+        "motion with contact grows towards the resonance (ν_s = 0.8455 for C_min) it parts the teeth, "
+        "and the run falls onto the large orbit: sooner or later, as its start has it.",
+        view(_LUBRICANT, 0.75, initial_phase=0),
     ),
     Stop(
         "Damping in contact removes it",
-        "c-□ at ν_s = 0.79. The material damps while the teeth touch, so nothing rings on, the "
-        "orbit hardly leaves y ≥ 0, and the curve goes on without a jump.",
+        "c-□ at ν_s = 0.79, with the dots of c-• in pale. The material damps while the teeth touch. "
+        "The start is forgotten, the orbit stays small, and the curve has no jump.",
         view(_MATERIAL, 0.79, beside=_LUBRICANT),
     ),
 )

@@ -107,7 +107,20 @@ function showControls() {
   byId("reset").disabled = !Object.keys(view.changed).length;
 }
 
+// The text of the stop of the tour whose view is shown; it stays while the reader plays with it.
+function showStop() {
+  const links = [...document.querySelectorAll("[data-stop]")], hash = hashOf();
+  const shown = links.find((link) => link.getAttribute("href") === hash);
+  if (!shown) return;
+  for (const link of links) {
+    byId(`stop-${link.dataset.stop}`).hidden = link !== shown;
+    if (link === shown) link.setAttribute("aria-current", "step");
+    else link.removeAttribute("aria-current");
+  }
+}
+
 function changed() {
+  showStop();
   showControls();
   request({ run: true });
 }
@@ -207,7 +220,8 @@ function savePng() {
   image.src = url;
 }
 
-readHash(location.hash);
+const firstStop = document.querySelector("[data-stop]");
+readHash(location.hash || firstStop?.getAttribute("href") || "");
 listen();
 listenToPictures();
 changed();

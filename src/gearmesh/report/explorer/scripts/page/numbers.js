@@ -22,10 +22,13 @@ function rowOf(variant) {
   return STUDY.variants.indexOf(variant);
 }
 
-// All extrema of a variant, as [ν_s, y, whether it is a maximum] in three arrays.
+const dotsOf = new Map();
+
+// All extrema of a variant: ν_s, y and whether it is a maximum, in three arrays.
 function studyDots(variant) {
+  if (dotsOf.has(variant)) return dotsOf.get(variant);
   const row = rowOf(variant), size = NUMBERS.nu.length, found = { nu: [], y: [], maximum: [] };
-  if (row < 0) return found;
+  dotsOf.set(variant, found);
   for (let j = 0; j < size; j++) {
     const cell = row * size + j;
     for (let i = FIRST_EXTREMUM[cell]; i < FIRST_EXTREMUM[cell + 1]; i++) {
