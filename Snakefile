@@ -85,6 +85,7 @@ rule data:
 
 include: "workflow/rules/cases.smk"
 include: "workflow/rules/datasets.smk"
+include: "workflow/rules/explorer.smk"
 
 
 if PLAN.study.claims:

@@ -5,6 +5,7 @@ rule hashes:
             PLACES.resonance,
             PLACES.bifurcation,
             PLACES.report,
+            PLACES.explorer,
             expand(PLACES.batch("{letter}"), letter=LETTERS),
         ],
         again=PLAN.again("hashes"),

@@ -95,6 +95,11 @@ class Places:
         return self.folder / "report" / "index.html"
 
     @property
+    def explorer(self) -> Path:
+        """The page with which the results can be explored."""
+        return self.folder / "report" / "explorer.html"
+
+    @property
     def hashes(self) -> Path:
         """The SHA-256 of all results."""
         return self.folder / "manifest.sha256"

@@ -29,6 +29,7 @@ from gearmesh.study.cases import Case, Study
 from gearmesh.study.loading import load_study
 
 _TEMPLATES = provenance.PACKAGE / "report" / "templates"
+_SCRIPTS = provenance.PACKAGE / "report" / "explorer" / "scripts"
 _STYLE = provenance.PACKAGE / "reproduction" / "figures" / "gearmesh.mplstyle"
 
 
@@ -190,6 +191,10 @@ _COMMITTED: dict[str, Callable[[], list[Path]]] = {
     "identified_figures": lambda: [_STYLE, layout.IDENTIFIED, layout.SETTINGS],
     "study_figures": lambda: [_STYLE],
     "notebook_pages": lambda: [_TEMPLATES / "notebook.html.j2", _TEMPLATES / "report.css"],
+    "explorer": lambda: [
+        *(_TEMPLATES / name for name in ("explorer.html.j2", "explorer.css", "report.css")),
+        *sorted(_SCRIPTS.rglob("*.js")),
+    ],
     "report": lambda: [
         *_templates(),
         *(paths.CAPTIONS / f"{name}.rst" for name in paths.FIGURE_NAMES),
@@ -220,6 +225,7 @@ _FACTS: dict[str, Callable[..., object]] = {
     "identified_figures": lambda plan: sorted(stated(plan.study.pair).items()),
     "printed": lambda plan: (plan.pair, _of_figure(plan.ledger, "printed")),
     "ledger": lambda plan: plan.ledger,
+    "explorer": lambda plan: _statements(plan.study),
     "report": lambda plan: _statements(plan.study),
     "study_report": lambda plan: _statements(plan.study),
     "samples": lambda plan, design, index: (

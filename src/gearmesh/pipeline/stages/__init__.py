@@ -12,7 +12,13 @@ STAGES = {
         *(cases.cases, cases.case, datasets.datasets, datasets.thresholds),
         *(figures.fig1, figures.figure, figures.identified_figures, figures.study_figures),
         *(claims.printed, claims.ledger, claims.verdict),
-        *(report.notebook_pages, report.report, report.study_report, report.hashes),
+        *(
+            report.notebook_pages,
+            report.explorer,
+            report.report,
+            report.study_report,
+            report.hashes,
+        ),
         *(identify.samples, identify.box, identify.all_samples, identify.identified),
         identify.identification_notebook,
     )
