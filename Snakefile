@@ -64,6 +64,7 @@ rule all:
         PLACES.report,
         PLACES.hashes,
         PLACES.as_expected if PLAN.study.claims else [],
+        [PLACES.branches, PLACES.special_points] if PLAN.study.plan.mechanisms else [],
 
 
 rule data:
@@ -75,6 +76,12 @@ rule data:
 
 include: "workflow/rules/cases.smk"
 include: "workflow/rules/datasets.smk"
+
+
+if PLAN.study.plan.mechanisms:
+
+    include: "workflow/rules/mechanisms.smk"
+
 
 
 if PLAN.study.claims:

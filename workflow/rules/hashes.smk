@@ -6,6 +6,7 @@ rule hashes:
             PLACES.bifurcation,
             PLACES.report,
             expand(PLACES.batch("{letter}"), letter=LETTERS),
+            [PLACES.branches, PLACES.special_points] if PLAN.study.plan.mechanisms else [],
         ],
         again=PLAN.again("hashes"),
     output:

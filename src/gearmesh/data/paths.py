@@ -75,6 +75,16 @@ class Places:
         return self.folder / "datasets" / "bifurcation.nc"
 
     @property
+    def branches(self) -> Path:
+        """Branches of orbits over ν_s."""
+        return self.folder / "datasets" / "branches.nc"
+
+    @property
+    def special_points(self) -> Path:
+        """Special points of the branches, a list."""
+        return self.folder / "datasets" / "special_points.json"
+
+    @property
     def thresholds(self) -> Path:
         """Thresholds, located by refinement in ν_s."""
         return self.folder / "datasets" / "thresholds.json"
@@ -121,6 +131,10 @@ class Places:
     def batch(self, letter: str) -> Path:
         """Return the batch file of a letter of Tab. 1, from which the datasets are made."""
         return self.folder / "batches" / f"{letter}.nc"
+
+    def orbits(self, letter: str) -> tuple[Path, Path]:
+        """Return the branches and the special points of a letter of Tab. 1."""
+        return self.folder / "orbits" / f"{letter}.nc", self.folder / "orbits" / f"{letter}.json"
 
     def figure_files(self, name: str) -> tuple[Path, Path]:
         """Return the PNG and the SVG file of a figure."""

@@ -193,6 +193,14 @@ class Branch:
         """Why the branch ends at its first and at its last point."""
         return self.found.ends
 
+    def at(self, point: int) -> Orbit:
+        """Return the orbit at a point of the branch."""
+        found, orbit = self.found.orbits[point], self.orbit
+        pair = orbit.pair
+        if self.parameter != "nu":
+            pair = _replaced(pair, self.parameter, float(self.found.values[point]))
+        return Orbit(pair, orbit.variant, found.problem.nu, found)
+
     @cached_property
     def special(self) -> list[SpecialPoint]:
         """Special points in their order along the branch."""
