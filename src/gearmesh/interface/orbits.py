@@ -408,6 +408,8 @@ def _family(orbit: Orbit, names: tuple[str, ...]) -> tuple[Family, tuple[float, 
                 pair = _replaced(pair, name, value)
         return pair.problem(orbit.variant, nu)
 
+    if names == ("nu",):  # no parameter of the pair changes, so it need not be read again
+        return branches.field_family(orbit.found.problem, "nu"), values
     made: Callable[..., Problem] = problem
     return made, values
 
