@@ -83,7 +83,6 @@ if PLAN.study.plan.mechanisms:
     include: "workflow/rules/mechanisms.smk"
 
 
-
 if PLAN.study.claims:
 
     include: "workflow/rules/figures.smk"
