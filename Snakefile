@@ -49,12 +49,22 @@ wildcard_constraints:
     root=re.escape(os.getcwd()),
 
 
+# Short rules run where Snakemake runs, also on a cluster.
 localrules:
     all,
     data,
     datasets,
     figures,
+    fig1,
+    study_figures,
+    identified_figures,
+    printed,
+    ledger,
+    verdict,
+    notebook_pages,
+    report,
     identify,
+    box,
     hashes,
 
 

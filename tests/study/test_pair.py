@@ -7,8 +7,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from gearmesh.errors import InputError
+from gearmesh.study.derived import DERIVED
 from gearmesh.study.loading import load_study
-from gearmesh.study.pair import DERIVED, KG_PER_N_S2_MM, Pair
+from gearmesh.study.pair import KG_PER_N_S2_MM, Pair
 
 NU_OF_THE_TEXT = 0.66
 

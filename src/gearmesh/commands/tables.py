@@ -4,7 +4,8 @@ import argparse
 import textwrap
 from collections.abc import Sequence
 
-from gearmesh.study.pair import DERIVED, Pair
+from gearmesh.study.derived import DERIVED
+from gearmesh.study.pair import Pair
 
 WIDTH = 100
 """Columns of a table."""

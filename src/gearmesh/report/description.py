@@ -12,7 +12,7 @@ from gearmesh.data import provenance
 from gearmesh.report.presentation import number
 from gearmesh.solvers.response import STATUSES
 from gearmesh.study.cases import Study
-from gearmesh.study.pair import DERIVED
+from gearmesh.study.derived import DERIVED
 
 
 @dataclass(frozen=True, slots=True)

@@ -11,8 +11,9 @@ from pathlib import Path
 from gearmesh.errors import InputError
 from gearmesh.study import yamlfile
 from gearmesh.study.cases import Plan, Study
+from gearmesh.study.derived import DERIVED
 from gearmesh.study.frequencies import read_nu
-from gearmesh.study.pair import DERIVED, Pair
+from gearmesh.study.pair import Pair
 from gearmesh.study.provenance import Statement, read_statement
 from gearmesh.study.schema import nearest, shown, validate
 
