@@ -10,7 +10,8 @@ from gearmesh.commands.runs import check_output, read_frequency, read_start
 from gearmesh.commands.tables import load_pair, print_table
 from gearmesh.data.writing import replacing
 from gearmesh.errors import InputError, NoOrbit
-from gearmesh.interface.orbits import Orbit, find_orbit, follow
+from gearmesh.interface.branches import follow
+from gearmesh.interface.orbits import Orbit, find_orbit
 from gearmesh.model.variants import variant
 
 NO_ORBIT = 1

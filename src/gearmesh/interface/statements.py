@@ -9,6 +9,7 @@ import numpy as np
 
 from gearmesh.errors import InputError
 from gearmesh.model.variants import Variant, variant
+from gearmesh.study import units
 from gearmesh.study.frequencies import read_nu
 from gearmesh.study.loading import load_study
 from gearmesh.study.pair import Pair
@@ -76,6 +77,29 @@ def with_settings(pair: Pair, start: Start | None = None, **settings: object) ->
         displacement, velocity = (_length(value) for value in start)
         changes |= {"initial_displacement": displacement, "initial_velocity": velocity}
     return pair.replace(**changes) if changes else pair
+
+
+def read_lengths(pair: Pair, name: str, values: object) -> np.ndarray:
+    """Return one length or several in static deflections.
+
+    Each has its unit, or is a number of static deflections.
+    """
+    several = values if isinstance(values, Iterable) and not isinstance(values, str) else [values]
+    found = [_read_length(pair, name, value) for value in several]
+    if not found:
+        raise InputError(f"{name}: none given; allowed is one length or several")
+    return np.array(found)
+
+
+def _read_length(pair: Pair, name: str, value: object) -> float:
+    value = value.item() if isinstance(value, np.generic) else value
+    y_st = pair.static_deflection
+    try:
+        if isinstance(value, str):
+            return units.parse(units.scaled(value, "y_st", y_st, "mm"), "mm") / y_st
+        return units.parse(value, "1")
+    except ValueError as error:
+        raise InputError(f"{name}: found {value!r}; {error}") from None
 
 
 def _length(value: object) -> object:

@@ -6,7 +6,8 @@ from typing import Any
 from gearmesh.dynamics import branches as dimensionless
 from gearmesh.dynamics import special_points
 from gearmesh.errors import NoOrbit
-from gearmesh.interface.orbits import Branch, Orbit, SpecialPoint, find_orbit, follow
+from gearmesh.interface.branches import Branch, SpecialPoint, follow
+from gearmesh.interface.orbits import Orbit, find_orbit
 from gearmesh.study.pair import Pair
 
 Range = tuple[float, float]

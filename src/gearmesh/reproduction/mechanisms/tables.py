@@ -9,7 +9,7 @@ import xarray as xr
 
 from gearmesh.data import casefile
 from gearmesh.data.writing import replacing
-from gearmesh.interface.orbits import Branch, SpecialPoint
+from gearmesh.interface.branches import Branch, SpecialPoint
 from gearmesh.study.cases import Study
 
 STABILITY = {1: "stable", 0: "neutral", -1: "unstable"}
