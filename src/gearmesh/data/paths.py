@@ -20,6 +20,10 @@ CHECKED = ("printed", *NOTEBOOK_NAMES)
 """The checks of claims: one for the printed numbers, and one for each notebook."""
 
 
+MECHANISMS = ("basins", "phases", "sweeps", "design_map", "lyapunov", "special_curves")
+"""Datasets about what lies behind the curves, besides the branches and their special points."""
+
+
 def nu_label(nu: float) -> str:
     """Write a frequency for a file name: 4 decimals, more only where this one needs them.
 
@@ -135,6 +139,10 @@ class Places:
     def orbits(self, letter: str) -> tuple[Path, Path]:
         """Return the branches and the special points of a letter of Tab. 1."""
         return self.folder / "orbits" / f"{letter}.nc", self.folder / "orbits" / f"{letter}.json"
+
+    def mechanism(self, name: str) -> Path:
+        """Return a dataset about what lies behind the curves."""
+        return self.folder / "datasets" / f"{name}.nc"
 
     def figure_files(self, name: str) -> tuple[Path, Path]:
         """Return the PNG and the SVG file of a figure."""

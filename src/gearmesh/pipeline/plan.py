@@ -224,7 +224,10 @@ _FACTS: dict[str, Callable[..., object]] = {
         *(plan.study.title, plan.pair, plan.mechanisms.by_letter[letter]),
         (plan.study.nu[0], plan.study.nu[-1]),
     ),
-    "branches": lambda plan: (plan.study.title, plan.pair, plan.mechanisms.variants),
+    **{
+        stage: lambda plan: (plan.study.title, plan.pair, plan.mechanisms)
+        for stage in ("branches", "basins", "sweeps", "lyapunov", "special_curves")
+    },
     "figure": lambda plan, name: (
         *(plan.study.title, plan.pair, plan.study.time_courses),
         _of_figure(plan.ledger, name),

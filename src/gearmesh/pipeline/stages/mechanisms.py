@@ -51,6 +51,53 @@ def branches(study: Study, places: Places) -> list[Path]:
     return [places.branches, places.special_points]
 
 
+def basins(study: Study, places: Places) -> list[Path]:
+    """Find what the starts and the starting phases of c-• lead to."""
+    from gearmesh.data.datasets import open_dataset
+    from gearmesh.reproduction.mechanisms import starts, tables
+
+    resolution = _mechanisms(study).resolution
+    known = open_dataset(places.branches)
+    made = starts.basins(study.pair, known, resolution), starts.phases(study.pair, resolution)
+    files = [places.mechanism("basins"), places.mechanism("phases")]
+    for file, dataset in zip(files, made, strict=True):
+        tables.write(file, dataset, study, file.stem)
+    return files
+
+
+def sweeps(study: Study, places: Places) -> list[Path]:
+    """Sweep ν_s up and down, for the variants of the study and over the damping."""
+    from gearmesh.reproduction.mechanisms import sweeps, tables
+
+    chosen = _mechanisms(study)
+    swept = sweeps.sweeps(study.pair, chosen.variants)
+    tables.write(places.mechanism("sweeps"), swept, study, "sweeps up and down")
+    mapped = sweeps.design_map(study.pair, chosen.resolution // 2)
+    tables.write(places.mechanism("design_map"), mapped, study, "design map")
+    return [places.mechanism("sweeps"), places.mechanism("design_map")]
+
+
+def lyapunov(study: Study, places: Places) -> list[Path]:
+    """Compute the Lyapunov exponents of the conservative variant."""
+    from gearmesh.reproduction.mechanisms import exponents, tables
+
+    found = exponents.exponents(study.pair, _mechanisms(study).resolution)
+    tables.write(places.mechanism("lyapunov"), found, study, "Lyapunov exponents")
+    return [places.mechanism("lyapunov")]
+
+
+def special_curves(study: Study, places: Places) -> list[Path]:
+    """Follow special points over ν_s and the damping, and over ν_s and the damping length."""
+    import json
+
+    from gearmesh.reproduction.mechanisms import curves, tables
+
+    rows = json.loads(places.special_points.read_text(encoding="utf-8"))
+    found = curves.curves(study.pair, rows)
+    tables.write(places.mechanism("special_curves"), found, study, "curves of special points")
+    return [places.mechanism("special_curves")]
+
+
 def _mechanisms(study: Study) -> Mechanisms:
     assert study.plan.mechanisms is not None  # without them there are no such rules
     return study.plan.mechanisms

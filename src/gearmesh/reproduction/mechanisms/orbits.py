@@ -3,6 +3,8 @@
 from collections.abc import Iterator
 from typing import Any
 
+import numpy as np
+
 from gearmesh.dynamics import branches as dimensionless
 from gearmesh.dynamics import special_points
 from gearmesh.errors import NoOrbit
@@ -21,11 +23,14 @@ WITHOUT_SUPPORTS: dict[str, Any] = {
 """Parameters of the second set: no friction, wheels that cannot move sideways. The mesh alone
 acts then, and several special points are known in closed form."""
 
-_SAME = 1e-6  # distance in ν_s of two flips that are the same
+_SAME = 1e-6  # distance in ν_s or in the state between two that are the same
 
 
 def branches(pair: Pair, variant: str, limits: Range) -> list[Branch]:
     """Follow the orbits of the mesh period, and those of twice the period where these flip.
+
+    Orbits are searched for in the middle and at the ends of the range, because a branch may leave
+    the range and come back as another one.
 
     Parameters
     ----------
@@ -39,13 +44,27 @@ def branches(pair: Pair, variant: str, limits: Range) -> list[Branch]:
     Returns
     -------
     list of Branch
-        The branch of period 1 first. It is empty if no orbit is found.
+        Those of period 1 first. It is empty if no orbit is found.
     """
-    try:
-        single = follow(find_orbit(pair, variant, 0.5 * sum(limits)), "nu", limits)
-    except NoOrbit:
-        return []
-    return [single, *_doubled(single, limits)]
+    single: list[Branch] = []
+    for nu in (0.5 * sum(limits), *limits):
+        try:
+            orbit = find_orbit(pair, variant, nu)
+            if not any(_ends_at(branch, orbit) for branch in single):
+                single.append(follow(orbit, "nu", limits))
+        except NoOrbit:
+            continue
+    doubled = [other for branch in single for other in _doubled(branch, limits)]
+    return [*single, *doubled]
+
+
+def _ends_at(branch: Branch, orbit: Orbit) -> bool:
+    """Return whether an orbit at an end of the range is an end of a branch."""
+    ends = branch.at(0), branch.at(-1)
+    return any(
+        end.nu == orbit.nu and np.abs(end.found.state - orbit.found.state).max() < _SAME
+        for end in ends
+    )
 
 
 def _doubled(single: Branch, limits: Range) -> Iterator[Branch]:
