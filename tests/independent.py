@@ -296,7 +296,9 @@ def integrate(
             run.mode = replace(run.mode, inside=n + 0.5 * (low + high) + problem.initial_phase)
             run.advance((n + high + problem.initial_phase) * problem.period)
         strobes.append(run.relative_motion())
-    return Course(np.array(strobes), np.array(run.extrema), run.state, run.regimes, run.slips, run.partings)
+    return Course(
+        np.array(strobes), np.array(run.extrema), run.state, run.regimes, run.slips, run.partings
+    )
 
 
 def _stops(problem: Problem) -> list[float]:
@@ -455,7 +457,13 @@ class _Run:
             self.mode = replace(self.mode, slip_sign=slip)
             self.slips.append((self.time - self.problem.start_time, slip))
 
+    def _join(self):
+        """Flanks that stick have one velocity; rounding leaves two."""
+        if self.mode.slip_sign == 0:
+            self.state[[6 + Z_3, 6 + Z_2]] = self.state[[6 + Z_3, 6 + Z_2]].mean()
+
     def _release(self):
+        self._join()
         needed = holding_force(self.problem, self.state)
         self._set_slip(1 if needed <= 0.0 else -1)
 
@@ -468,9 +476,7 @@ class _Run:
         self._settle_slip()
 
     def _settle_slip(self):
-        # Flanks that stick have one velocity; rounding leaves two.
-        if self.mode.slip_sign == 0:
-            self.state[[6 + Z_3, 6 + Z_2]] = self.state[[6 + Z_3, 6 + Z_2]].mean()
+        self._join()
         if self.state[6 + Z_3] != self.state[6 + Z_2]:
             return
         holds = self._margin(self.time, self.state) >= 0.0

@@ -49,6 +49,7 @@ TORQUE = {
     "torque_harmonics_3": (Harmonic(1.0, 0.15, 0.05), *ONCE_A_TURN),
     "torque_harmonics_2": (Harmonic(0.5, 0.0, 0.1),),
 }
+SWING = {"torque_harmonics_3": (Harmonic(0.5, 1.2, 0.0),)}
 CRACK = (ToothFactor(3, 2, 0.6), ToothFactor(2, 5, 0.8))
 WAVES = {"stiffness_fourier": ((0.2, 0.05), (0.05, -0.03))}
 TABLE = {"stiffness_table": ((0.0, 1.2), (0.3, 1.2), (0.35, 0.8), (0.65, 0.8), (1.0, 1.2))}
@@ -60,7 +61,7 @@ CASES = {
     "two wheels, contact loss": unequal(0.85, "c-lubricant", friction_coefficient=0.1),
     "two wheels, back flanks": unequal(0.9, "b-both", backlash=0.4),
     "two wheels, run-out": unequal(0.7, "b-material", **RUN_OUT),
-    "two wheels, run-out, sliding": unequal(0.7, "c-both", friction_coefficient=0.1, **RUN_OUT),
+    "two wheels, run-out, sliding": unequal(0.7, "c-both", friction_coefficient=0.02, **RUN_OUT),
     "different bearings, equal wheels": unequal(
         0.8, wheels=(replace(WHEEL, inertia=2.0), replace(WHEEL, inertia=2.0, body_mass=10.0))
     ),
@@ -83,12 +84,12 @@ CASES = {
         0.8, "c-both", {"tooth_factors": CRACK, "tooth_pair_stiffness": BUMP}
     ),
     "stiffening": pair(0.75, "c-both", STIFFENING),
-    "stiffening, back flanks, two wheels": unequal(0.9, "b-both", STIFFENING, backlash=0.15),
+    "stiffening, back flanks, two wheels": unequal(0.9, "b-lubricant", STIFFENING, backlash=0.3),
     "stiffening, Fourier": unequal(0.7, "b-both", {**STIFFENING, **WAVES}),
     "non-adhesive": pair(0.85, "b-both", {"non_adhesive": True}),
     "non-adhesive, back flanks": pair(0.9, "b-both", {"non_adhesive": True}, backlash=0.4),
     "non-adhesive, two wheels, strong damping": unequal(
-        0.95, "g-both", {"non_adhesive": True, **TORQUE}, material=(0.3, 0.2, 0.1)
+        0.8, "g-both", {"non_adhesive": True, **SWING}, material=(0.3, 0.2, 0.1)
     ),
     "damping with the root of the stiffness": pair(0.75, "c-both", {"damping_power": 0.5}),
     "damping with the stiffness, Fourier": unequal(0.75, "g-both", {"damping_power": 1.0, **WAVES}),
@@ -129,8 +130,7 @@ def test_agrees_with_dop853(name):
     count = len(course.extrema) - 1
     np.testing.assert_allclose(response.extremum_y[:count], course.extrema[:count, 1], atol=1e-8)
     regimes = {value for _, value in course.regimes}
-    assert (CONTACT_LOSS in regimes) == ("contact loss" in name or "back" in name or regimes != set())
-    if "back" in name:
-        assert INVERSE_MESH in regimes
-    if "non-adhesive" in name:
-        assert course.partings > 1
+    assert CONTACT_LOSS in regimes or "contact loss" not in name
+    assert INVERSE_MESH in regimes or "back flanks" not in name
+    assert course.partings > 1 or "non-adhesive" not in name
+    assert {value for _, value in course.slips} >= {-1, 0} or "sliding" not in name
