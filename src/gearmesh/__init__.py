@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from gearmesh.errors import InputError, NoOrbit
-    from gearmesh.interface.attractors import attractors, basins, lyapunov_spectrum
+    from gearmesh.interface.attractors import attractors, basins
     from gearmesh.interface.branches import (
         Branch,
         SpecialCurve,
@@ -20,6 +20,7 @@ if TYPE_CHECKING:
         follow,
         follow_special,
     )
+    from gearmesh.interface.lyapunov import lyapunov_spectrum
     from gearmesh.interface.orbits import Orbit, find_orbit
     from gearmesh.interface.runs import simulate, sweep
     from gearmesh.interface.statements import paper
@@ -50,11 +51,12 @@ __all__ = [
 
 _MODULES = {
     "gearmesh.errors": ("InputError", "NoOrbit"),
-    "gearmesh.interface.attractors": ("attractors", "basins", "lyapunov_spectrum"),
+    "gearmesh.interface.attractors": ("attractors", "basins"),
     "gearmesh.interface.branches": (
         *("Branch", "SpecialCurve", "SpecialPoint"),
         *("follow", "follow_special"),
     ),
+    "gearmesh.interface.lyapunov": ("lyapunov_spectrum",),
     "gearmesh.interface.orbits": ("Orbit", "find_orbit"),
     "gearmesh.interface.runs": ("simulate", "sweep"),
     "gearmesh.interface.statements": ("paper",),
