@@ -136,6 +136,11 @@ def _add_runs(commands: "argparse._SubParsersAction[_Parser]", pair: _Parser) ->
         choices=("up", "down"),
         help="start each run from the end of the run before it",
     )
+    sweep.add_argument(
+        "--loads",
+        action="store_true",
+        help="measure tooth forces, dynamic factors, transmission errors and bearing forces, too",
+    )
     sweep.set_defaults(run=_sweep)
 
 
