@@ -70,6 +70,14 @@ class Branch:
         """Why the branch ends at its first and at its last point."""
         return self.found.ends
 
+    def at(self, point: int) -> Orbit:
+        """Return the orbit at a point of the branch."""
+        found, orbit = self.found.orbits[point], self.orbit
+        pair = orbit.pair
+        if self.parameter != "nu":
+            pair = _replaced(pair, self.parameter, float(self.found.values[point]))
+        return Orbit(pair, orbit.variant, found.problem.nu, found)
+
     @cached_property
     def special(self) -> list[SpecialPoint]:
         """Special points in their order along the branch."""
@@ -221,6 +229,8 @@ def _family(orbit: Orbit, names: tuple[str, ...]) -> tuple[Family, tuple[float, 
                 pair = _replaced(pair, name, value)
         return pair.problem(orbit.variant, nu)
 
+    if names == ("nu",):  # no parameter of the pair changes, so it need not be read again
+        return branches.field_family(orbit.found.problem, "nu"), values
     made: Callable[..., Problem] = problem
     return made, values
 

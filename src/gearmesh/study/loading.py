@@ -21,8 +21,9 @@ from gearmesh.study.speeds import as_nu
 
 _MAX_BASES = 8
 _NAME = re.compile(r"[A-Za-z0-9_-][A-Za-z0-9._-]{0,63}")
-_OWN = ("name", "title", "claims")
-"""Keys that a file does not inherit from its base, because they identify the study itself."""
+_OWN = ("name", "title", "claims", "mechanisms")
+"""Keys that a file does not inherit from its base: they identify the study itself, or ask for what
+takes longer than all its cases."""
 
 _OF_FREQUENCIES = ("nu", "strong_damping", "time_courses")
 """Keys whose frequencies may be speeds in rpm."""
