@@ -23,6 +23,7 @@ if TYPE_CHECKING:
     from gearmesh.interface.lyapunov import lyapunov_spectrum
     from gearmesh.interface.orbits import Orbit, find_orbit
     from gearmesh.interface.runs import simulate, sweep
+    from gearmesh.interface.spectra import campbell, spectrum
     from gearmesh.interface.statements import paper
     from gearmesh.study.loading import load
     from gearmesh.study.pair import Pair
@@ -39,6 +40,7 @@ __all__ = [
     "SpecialPoint",
     "attractors",
     "basins",
+    "campbell",
     "find_orbit",
     "follow",
     "follow_special",
@@ -46,6 +48,7 @@ __all__ = [
     "lyapunov_spectrum",
     "paper",
     "simulate",
+    "spectrum",
     "sweep",
 ]
 
@@ -59,6 +62,7 @@ _MODULES = {
     "gearmesh.interface.lyapunov": ("lyapunov_spectrum",),
     "gearmesh.interface.orbits": ("Orbit", "find_orbit"),
     "gearmesh.interface.runs": ("simulate", "sweep"),
+    "gearmesh.interface.spectra": ("campbell", "spectrum"),
     "gearmesh.interface.statements": ("paper",),
     "gearmesh.study.loading": ("load",),
     "gearmesh.study.pair": ("Pair",),
