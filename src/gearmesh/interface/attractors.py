@@ -31,7 +31,7 @@ _MOST_PERIODS = 10_000_000
 def attractors(
     pair: Pair,
     variant: str | Variant,
-    nu: float,
+    nu: float | str,
     *,
     starts: Sequence[Start] | None = None,
     revolutions: int = TRANSIENT,
@@ -44,8 +44,8 @@ def attractors(
         The gear pair, without eccentricity, profile deviation and Fourier stiffness.
     variant : str or Variant
         Which damping terms act where.
-    nu : float
-        Mesh frequency ν_s.
+    nu : float or str
+        Mesh frequency ν_s, or the speed of wheel 3, as ``"3000 rpm"``.
     starts : sequence of tuple, optional
         Initial conditions (y, dy/dτ_s), each with its unit or as a number of static deflections.
         By default the pair's own and a grid of 36.
@@ -97,7 +97,7 @@ def attractors(
 def basins(
     pair: Pair,
     variant: str | Variant,
-    nu: float,
+    nu: float | str,
     *,
     y: object,
     v: object = 0.0,
@@ -169,7 +169,7 @@ def basins(
 def lyapunov_spectrum(
     pair: Pair,
     variant: str | Variant,
-    nu: float | Sequence[float] | np.ndarray,
+    nu: float | str | Sequence[float | str] | np.ndarray,
     *,
     start: Start | None = None,
     periods: int = 1000,
@@ -182,7 +182,7 @@ def lyapunov_spectrum(
     pair, variant
         As for `attractors`.
     nu : array_like
-        One mesh frequency ν_s or several.
+        One mesh frequency ν_s, or speed of wheel 3, or several.
     start : tuple, optional
         Initial condition (y, dy/dτ_s), as for `simulate`; by default that of the pair.
     periods : int
@@ -209,7 +209,7 @@ def lyapunov_spectrum(
     >>> bool(found.exponents[0, 0] < 0.0)
     True
     """
-    nus = read_frequencies(nu)
+    nus = read_frequencies(nu, pair)
     _check("periods", periods, 8, _MOST_PERIODS)
     _check("transient", transient, 0, _MOST_PERIODS)
     begun = with_settings(pair, start)
@@ -230,9 +230,9 @@ def lyapunov_spectrum(
     return dataset
 
 
-def _problem(pair: Pair, variant: str | Variant, nu: float) -> Problem:
+def _problem(pair: Pair, variant: str | Variant, nu: float | str) -> Problem:
     """Return the problem that a request states."""
-    problem = pair.problem(read_variant(variant), read_frequency(nu))
+    problem = pair.problem(read_variant(variant), read_frequency(nu, pair))
     if not is_reducible(problem):
         raise InputError(
             "attractors: found run-out, profile deviation or Fourier stiffness; allowed are pairs "
