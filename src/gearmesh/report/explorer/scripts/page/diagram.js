@@ -43,10 +43,7 @@ class Diagram {
     const { frame } = this, x = frame.toX(view.nu);
     pen.within(frame.x - 5, frame.y, frame.width + 10, frame.height, () => {
       pen.line([x, frame.y, x, frame.y + frame.height], theme.accent, 1.5);
-      for (const extremum of result.extrema) {
-        const colour = extremum.kind > 0 ? theme.of(view.variant) : theme.soft;
-        pen.marker("circle", x, frame.toY(extremum.y), 3, colour, theme.normal);
-      }
+      pen.dots(result.extrema.flatMap(({ y }) => [x, frame.toY(y)]), theme.accent, 5);
     });
   }
 
