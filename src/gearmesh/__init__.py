@@ -12,15 +12,15 @@ from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from gearmesh.errors import InputError, NoOrbit
-    from gearmesh.interface.orbits import (
+    from gearmesh.interface.attractors import attractors, basins, lyapunov_spectrum
+    from gearmesh.interface.branches import (
         Branch,
-        Orbit,
         SpecialCurve,
         SpecialPoint,
-        find_orbit,
         follow,
         follow_special,
     )
+    from gearmesh.interface.orbits import Orbit, find_orbit
     from gearmesh.interface.runs import simulate, sweep
     from gearmesh.interface.statements import paper
     from gearmesh.study.loading import load
@@ -36,10 +36,13 @@ __all__ = [
     "Pair",
     "SpecialCurve",
     "SpecialPoint",
+    "attractors",
+    "basins",
     "find_orbit",
     "follow",
     "follow_special",
     "load",
+    "lyapunov_spectrum",
     "paper",
     "simulate",
     "sweep",
@@ -47,10 +50,12 @@ __all__ = [
 
 _MODULES = {
     "gearmesh.errors": ("InputError", "NoOrbit"),
-    "gearmesh.interface.orbits": (
-        *("Branch", "Orbit", "SpecialCurve", "SpecialPoint"),
-        *("find_orbit", "follow", "follow_special"),
+    "gearmesh.interface.attractors": ("attractors", "basins", "lyapunov_spectrum"),
+    "gearmesh.interface.branches": (
+        *("Branch", "SpecialCurve", "SpecialPoint"),
+        *("follow", "follow_special"),
     ),
+    "gearmesh.interface.orbits": ("Orbit", "find_orbit"),
     "gearmesh.interface.runs": ("simulate", "sweep"),
     "gearmesh.interface.statements": ("paper",),
     "gearmesh.study.loading": ("load",),

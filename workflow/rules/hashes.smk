@@ -7,6 +7,7 @@ rule hashes:
             PLACES.report,
             PLACES.explorer,
             expand(PLACES.batch("{letter}"), letter=LETTERS),
+            [PLACES.branches, PLACES.special_points] if PLAN.study.plan.mechanisms else [],
         ],
         again=PLAN.again("hashes"),
     output:

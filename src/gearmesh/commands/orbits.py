@@ -10,7 +10,8 @@ from gearmesh.commands.runs import check_output, read_frequency, read_start
 from gearmesh.commands.tables import load_pair, print_table
 from gearmesh.data.writing import replacing
 from gearmesh.errors import InputError, NoOrbit
-from gearmesh.interface.orbits import Orbit, find_orbit, follow
+from gearmesh.interface.branches import follow
+from gearmesh.interface.orbits import Orbit, find_orbit
 from gearmesh.model.variants import variant
 
 NO_ORBIT = 1
@@ -66,10 +67,11 @@ def branch(options: argparse.Namespace) -> int:
 def _find(options: argparse.Namespace) -> Orbit:
     if not options.periods.isdecimal():
         raise InputError(f"--periods: found '{options.periods}'; allowed is a whole number")
+    pair = load_pair(options)
     return find_orbit(
-        load_pair(options),
+        pair,
         variant(options.variant),
-        read_frequency(options.nu),
+        read_frequency(options.nu, pair),
         periods=int(options.periods),
         start=read_start(options.start),
     )

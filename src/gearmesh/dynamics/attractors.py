@@ -8,6 +8,7 @@ the damping that still acts and by their Lyapunov exponents.
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 from itertools import product
 from typing import NamedTuple
 
@@ -69,8 +70,40 @@ class Attractor:
 
     @property
     def label(self) -> str:
-        """The kind, with the period of an orbit."""
-        return f"period {self.orbit.periods}" if self.orbit else self.kind
+        """A name that depends on the attractor alone, not on how it was found.
+
+        For an orbit it is the period and the stroboscopic point (y, y') of greatest y at mesh
+        phase 0; otherwise the kind.
+        """
+        if self.orbit is None:
+            return self.kind
+        return f"period {self.orbit.periods} at ({self.strobe_y:.4f}, {self.strobe_v:.4f})"
+
+    @cached_property
+    def _strobe(self) -> np.ndarray:
+        if self.orbit is None:
+            return np.full(4, math.nan)
+        return max(points(at_phase(self.orbit, 0.0)), key=lambda point: float(point[0]))
+
+    @property
+    def strobe_y(self) -> float:
+        """The greatest y of an orbit at mesh phase 0; not a number if it is none."""
+        return float(self._strobe[0])
+
+    @property
+    def strobe_v(self) -> float:
+        """Rate y' at that point."""
+        return float(self._strobe[1])
+
+    @property
+    def y_max(self) -> float:
+        """Greatest y of an orbit."""
+        return self.orbit.y_max if self.orbit else math.nan
+
+    @property
+    def y_min(self) -> float:
+        """Least y of an orbit."""
+        return self.orbit.y_min if self.orbit else math.nan
 
     @property
     def time_constant(self) -> float:
@@ -120,6 +153,15 @@ def reached(problems: Sequence[Problem], transient: int = TRANSIENT) -> Reached:
     return Reached([known[j] for j in order], np.argsort(order)[labels])
 
 
+def grid(problem: Problem) -> list[Problem]:
+    """Return runs from a grid of initial conditions that reaches through the backlash."""
+    rest = -2.0 / problem.bearing_stiffness
+    heights = (-problem.backlash - 1.0, -0.5 * problem.backlash, 0.0, 1.0, 2.0, 4.0)
+    rates = (-4.0, -2.0, -0.7, 0.7, 2.0, 4.0)
+    states = [State(y, v, rest, 0.0) for y, v in product(heights, rates)]
+    return [replace(problem, initial_state=state) for state in states]
+
+
 def attractor_at(problem: Problem, state: np.ndarray, known: Sequence[Attractor] = ()) -> Attractor:
     """Return the attractor of a motion from its state after the transient.
 
@@ -161,14 +203,18 @@ def _unordered(problem: Problem, state: np.ndarray) -> Attractor:
     return Attractor(QUASI_PERIODIC if change < _LEAST_CHANGE else MOVING, spectrum=spectrum)
 
 
+def points(orbit: Orbit) -> list[np.ndarray]:
+    """Return the states of an orbit at its phase in each of its mesh periods."""
+    found = [orbit.state]
+    for _ in range(orbit.periods - 1):
+        found.append(passage(orbit.problem, found[-1]).end)
+    return found
+
+
 def _distance(orbit: Orbit, problem: Problem, state: np.ndarray) -> float:
     """Return the distance in y_st from a state to the nearest stroboscopic point of an orbit."""
-    moved = at_phase(orbit, problem.initial_phase)
-    point, least = moved.state, math.inf
-    for _ in range(orbit.periods):
-        least = min(least, float(np.abs(point - state).max()))
-        point = passage(moved.problem, point).end
-    return least
+    moved = points(at_phase(orbit, problem.initial_phase))
+    return min(float(np.abs(point - state).max()) for point in moved)
 
 
 def _arrives(orbit: Orbit, state: np.ndarray) -> bool:

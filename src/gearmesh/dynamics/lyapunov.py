@@ -4,7 +4,9 @@ from typing import NamedTuple
 
 import numpy as np
 
+from gearmesh.dynamics.starts import coordinates
 from gearmesh.errors import NoOrbit
+from gearmesh.model.motion import state_at
 from gearmesh.model.problem import Problem
 from gearmesh.solvers.reduced.period_map import passage
 
@@ -68,3 +70,13 @@ def lyapunov_spectrum(
     errors = parts.std(axis=0, ddof=1) / np.sqrt(_BLOCKS)
     order = np.argsort(-exponents)
     return LyapunovSpectrum(exponents[order], errors[order], state, damping)
+
+
+def spectrum_of(problem: Problem, periods: int, transient: int) -> LyapunovSpectrum:
+    """Return the Lyapunov exponents of a run; not-a-number if it runs away."""
+    state = coordinates(problem.initial_state or state_at(problem))
+    try:
+        return lyapunov_spectrum(problem, state, periods, transient)
+    except NoOrbit:
+        nothing = np.full(4, np.nan)
+        return LyapunovSpectrum(nothing, nothing, nothing, np.nan)

@@ -9,9 +9,10 @@ import numpy as np
 
 from gearmesh.errors import InputError
 from gearmesh.model.variants import Variant, variant
-from gearmesh.study.frequencies import read_nu
+from gearmesh.study import units
 from gearmesh.study.loading import load_study
 from gearmesh.study.pair import Pair
+from gearmesh.study.speeds import read_nu_or_speed
 
 Start = tuple[object, object]
 """Initial condition: y and dy/dτ_s, each with its unit, or a number of static deflections."""
@@ -49,17 +50,20 @@ def read_variants(values: str | Variant | Iterable[str | Variant]) -> list[Varia
     return found
 
 
-def read_frequency(nu: float) -> float:
-    """Return a mesh frequency ν_s; raises InputError if the value is not one."""
+def read_frequency(nu: float | str, pair: Pair) -> float:
+    """Return a mesh frequency ν_s, also of a speed; raises InputError if the value is neither."""
     try:
-        return read_nu(nu.item() if isinstance(nu, np.generic) else nu)
+        return read_nu_or_speed(nu.item() if isinstance(nu, np.generic) else nu, pair)
     except ValueError as error:
         raise InputError(f"nu: found {nu!r}; {error}") from None
 
 
-def read_frequencies(nu: float | Sequence[float] | np.ndarray) -> list[float]:
+def read_frequencies(
+    nu: float | str | Sequence[float | str] | np.ndarray, pair: Pair
+) -> list[float]:
     """Return one mesh frequency or several, without repetition."""
-    found = [read_frequency(float(value)) for value in np.atleast_1d(np.asarray(nu, float))]
+    values = [nu] if isinstance(nu, str) else np.atleast_1d(np.asarray(nu)).tolist()
+    found = [read_frequency(value, pair) for value in values]
     if not found:
         raise InputError("nu: none given; allowed is one frequency or several")
     if len(set(found)) < len(found):
@@ -76,6 +80,29 @@ def with_settings(pair: Pair, start: Start | None = None, **settings: object) ->
         displacement, velocity = (_length(value) for value in start)
         changes |= {"initial_displacement": displacement, "initial_velocity": velocity}
     return pair.replace(**changes) if changes else pair
+
+
+def read_lengths(pair: Pair, name: str, values: object) -> np.ndarray:
+    """Return one length or several in static deflections.
+
+    Each has its unit, or is a number of static deflections.
+    """
+    several = values if isinstance(values, Iterable) and not isinstance(values, str) else [values]
+    found = [_read_length(pair, name, value) for value in several]
+    if not found:
+        raise InputError(f"{name}: none given; allowed is one length or several")
+    return np.array(found)
+
+
+def _read_length(pair: Pair, name: str, value: object) -> float:
+    value = value.item() if isinstance(value, np.generic) else value
+    y_st = pair.static_deflection
+    try:
+        if isinstance(value, str):
+            return units.parse(units.scaled(value, "y_st", y_st, "mm"), "mm") / y_st
+        return units.parse(value, "1")
+    except ValueError as error:
+        raise InputError(f"{name}: found {value!r}; {error}") from None
 
 
 def _length(value: object) -> object:

@@ -1,0 +1,267 @@
+"""Branches of orbits and curves of special points, with units."""
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from gearmesh.dynamics import branches, special_curves, special_points
+from gearmesh.dynamics.continuation import Family
+from gearmesh.errors import InputError
+from gearmesh.interface.lengths import with_lengths
+from gearmesh.interface.orbits import Orbit
+from gearmesh.model.problem import Problem
+from gearmesh.study import units
+from gearmesh.study.alternatives import DECLARED
+from gearmesh.study.pair import Pair
+
+Limits = tuple[object, object]
+"""Ends of a range: numbers in the parameter's unit, or texts with units."""
+
+
+@dataclass(frozen=True)
+class SpecialPoint:
+    """A point of a branch where something changes.
+
+    Attributes
+    ----------
+    kind : str
+        ``"fold"``, ``"flip"``, ``"torus"``, ``"branch_point"``, ``"grazing_front"``,
+        ``"grazing_back"``, ``"switching"`` or, on a curve of folds, ``"cusp"``.
+    nu : float
+        Mesh frequency ν_s.
+    parameters : dict
+        The parameters that are followed, by name, in their units.
+    orbit : Orbit
+        The orbit there.
+    """
+
+    kind: str
+    nu: float
+    parameters: dict[str, float]
+    orbit: Orbit = field(repr=False)
+
+
+@dataclass(frozen=True)
+class Branch:
+    """A branch of orbits, as `follow` returns it.
+
+    Attributes
+    ----------
+    orbit : Orbit
+        Where the branch was entered.
+    found : gearmesh.dynamics.branches.Branch
+        The branch in dimensionless form.
+    """
+
+    orbit: Orbit
+    found: branches.Branch = field(repr=False)
+
+    @property
+    def parameter(self) -> str:
+        """Name of the parameter that is followed."""
+        return self.found.parameter
+
+    @property
+    def ends(self) -> tuple[str, str]:
+        """Why the branch ends at its first and at its last point."""
+        return self.found.ends
+
+    def at(self, point: int) -> Orbit:
+        """Return the orbit at a point of the branch."""
+        found, orbit = self.found.orbits[point], self.orbit
+        pair = orbit.pair
+        if self.parameter != "nu":
+            pair = _replaced(pair, self.parameter, float(self.found.values[point]))
+        return Orbit(pair, orbit.variant, found.problem.nu, found)
+
+    @cached_property
+    def special(self) -> list[SpecialPoint]:
+        """Special points in their order along the branch."""
+        return [_special(point, self.orbit) for point in self.found.special]
+
+    def to_dataset(self) -> xr.Dataset:
+        """Return the branch.
+
+        Returns
+        -------
+        xarray.Dataset
+            Over ``point``: the parameter, `nu`, `y_max`, `y_min`, `stable`, `neutral`, and
+            `multipliers` (complex, over ``multiplier`` too). Lengths as in `Orbit.to_dataset`.
+        """
+        found, pair = self.found, self.orbit.pair
+        dataset = with_lengths(
+            {
+                "y_max": (("point",), found.y_max, "maximum of y"),
+                "y_min": (("point",), found.y_min, "minimum of y"),
+            },
+            pair,
+        )
+        nu = np.array([orbit.problem.nu for orbit in found.orbits])
+        for name, values, what in (
+            ("nu", nu, "mesh frequency nu_s"),
+            ("stable", found.stable, "whether the orbit is stable"),
+            ("neutral", found.neutral, "whether no damping acts along the orbit"),
+        ):
+            dataset[name] = ("point", values, {"units": "1", "long_name": what})
+        stated = {"units": "1", "long_name": "Floquet multipliers"}
+        dataset["multipliers"] = (("point", "multiplier"), found.multipliers, stated)
+        if self.parameter != "nu":
+            unit, what = _declared(pair, self.parameter)
+            stated = {"units": unit, "long_name": what}
+            dataset[self.parameter] = ("point", found.values, stated)
+        dataset.attrs = {"variant": self.orbit.variant.name, "parameters": pair.canonical()}
+        return dataset
+
+
+def follow(orbit: Orbit, parameter: str, limits: Limits) -> Branch:
+    """Follow an orbit in one parameter, in both directions.
+
+    Parameters
+    ----------
+    orbit : Orbit
+        Where to begin.
+    parameter : str
+        ``"nu"``, or any parameter of the pair that is a single number.
+    limits : tuple
+        Lowest and highest value, each a number in the parameter's unit or a text with its unit.
+
+    Returns
+    -------
+    Branch
+        Orbits along the branch, and its special points, located to 1e-8 in the parameter.
+
+    Raises
+    ------
+    NoOrbit
+        If the branch cannot be followed; the message gives the reason.
+    InputError
+        One line, if an argument is wrong.
+    """
+    family, (value,) = _family(orbit, (parameter,))
+    found = branches.follow(
+        orbit.found, parameter, _limits(orbit.pair, parameter, limits), family, value
+    )
+    return Branch(orbit, found)
+
+
+@dataclass(frozen=True)
+class SpecialCurve:
+    """A curve of special points in two parameters, as `follow_special` returns it."""
+
+    point: SpecialPoint
+    found: special_curves.SpecialCurve = field(repr=False)
+
+    @cached_property
+    def cusps(self) -> list[SpecialPoint]:
+        """Of a curve of folds: where two folds meet and vanish."""
+        return [_special(cusp, self.point.orbit) for cusp in self.found.cusps]
+
+    def to_dataset(self) -> xr.Dataset:
+        """Return the curve over ``point``: both parameters, and `y_max` and `y_min` there."""
+        pair = self.point.orbit.pair
+        heights: dict[str, tuple[tuple[str, ...], Any, str]] = {
+            name: (("point",), [getattr(orbit, name) for orbit in self.found.orbits], what)
+            for name, what in (("y_max", "maximum of y"), ("y_min", "minimum of y"))
+        }
+        dataset = with_lengths(heights, pair)
+        for name, values in zip(self.found.parameters, self.found.values.T, strict=True):
+            unit, what = _declared(pair, name)
+            dataset[name] = ("point", values, {"units": unit, "long_name": what})
+        dataset.attrs = {"kind": self.found.kind, "variant": self.point.orbit.variant.name}
+        return dataset
+
+
+def follow_special(
+    point: SpecialPoint, parameters: tuple[str, str], limits: tuple[Limits, Limits]
+) -> SpecialCurve:
+    """Follow a special point in two parameters, in both directions.
+
+    Parameters
+    ----------
+    point : SpecialPoint
+        Of a branch.
+    parameters : tuple of two str
+        ``"nu"`` and a parameter of the pair, or two parameters.
+    limits : tuple of two tuples
+        Range of each parameter, as for `follow`.
+
+    Raises
+    ------
+    NoOrbit
+        If the curve cannot be followed; the message gives the reason.
+    """
+    orbit = point.orbit
+    family, values = _family(orbit, parameters)
+    first, second = (
+        _limits(orbit.pair, name, ends) for name, ends in zip(parameters, limits, strict=True)
+    )
+    bare = special_points.SpecialPoint(point.kind, point.nu, point.parameters, orbit.found)
+    found = special_curves.follow_special(bare, parameters, (first, second), family, values)
+    return SpecialCurve(point, found)
+
+
+def _special(point: special_points.SpecialPoint, orbit: Orbit) -> SpecialPoint:
+    """Return a special point with the pair that it belongs to."""
+    pair = orbit.pair
+    for name, value in point.parameters.items():
+        if name != "nu":
+            pair = _replaced(pair, name, value)
+    found = Orbit(pair, orbit.variant, point.nu, point.orbit)
+    return SpecialPoint(point.kind, point.nu, dict(point.parameters), found)
+
+
+def _family(orbit: Orbit, names: tuple[str, ...]) -> tuple[Family, tuple[float, ...]]:
+    """Return the problems over some parameters, and the values of these at an orbit."""
+    for name in names:
+        _declared(orbit.pair, name)
+    values = tuple(orbit.nu if name == "nu" else float(getattr(orbit.pair, name)) for name in names)
+
+    def problem(*stated: float) -> Problem:
+        pair, nu = orbit.pair, orbit.nu
+        for name, value in zip(names, stated, strict=True):
+            if name == "nu":
+                nu = value
+            else:
+                pair = _replaced(pair, name, value)
+        return pair.problem(orbit.variant, nu)
+
+    if names == ("nu",):  # no parameter of the pair changes, so it need not be read again
+        return branches.field_family(orbit.found.problem, "nu"), values
+    made: Callable[..., Problem] = problem
+    return made, values
+
+
+def _replaced(pair: Pair, name: str, value: float) -> Pair:
+    unit, _ = _declared(pair, name)
+    return pair.replace(**{name: value if unit == "1" else f"{value!r} {unit}"})
+
+
+def _declared(pair: Pair, name: str) -> tuple[str, str]:
+    """Return unit and meaning of a parameter that can be followed."""
+    if name == "nu":
+        return "1", "mesh frequency nu_s"
+    if name in DECLARED:
+        value = getattr(pair, name)
+        if isinstance(value, float):
+            return DECLARED[name]["unit"], DECLARED[name]["description"]
+        raise InputError(f"{name}: found {value!r}; allowed are single real numbers")
+    raise InputError(f"{name}: no such parameter; 'gearmesh parameters' lists all")
+
+
+def _limits(pair: Pair, name: str, limits: Limits) -> tuple[float, float]:
+    """Read the ends of a range."""
+    unit, _ = _declared(pair, name)
+    try:
+        low, high = (
+            units.parse(end, unit) if isinstance(end, str) else float(end)  # type: ignore[arg-type]
+            for end in limits
+        )
+    except (TypeError, ValueError) as error:
+        raise InputError(f"limits of {name}: found {limits!r}; {error}") from None
+    if not low < high:
+        raise InputError(f"limits of {name}: found {limits!r}; allowed is (low, high)")
+    return low, high
