@@ -103,7 +103,9 @@ def test_every_variant_can_be_chosen_and_agrees_with_its_case(explorer, smoke):
     explorer.fill("#nu-field", "0.8")
     explorer.press("#nu-field", "Enter")
     names = [str(name) for name in resonance["variant"].values]
-    assert explorer.locator("#variant option").evaluate_all("all => all.map((o) => o.value)") == names
+    assert (
+        explorer.locator("#variant option").evaluate_all("all => all.map((o) => o.value)") == names
+    )
     for name in names:
         explorer.select_option("#variant", name)
         case = resonance.sel(variant=name, nu=0.8)
@@ -228,13 +230,24 @@ def test_the_tour_leads_through_its_views(explorer):
 
 def test_the_tour_says_what_the_runs_show(explorer):
     """Each number in its texts: the motions at 0.75 and 0.79, and where the jump lies."""
-    run = "([nu, changes]) => { const r = (%s)(['c-lubricant', nu, changes]); return [r.extremes[0], r.loss]; }"
-    show = lambda nu, **changes: explorer.evaluate(run % RUN, [nu, changes])  # noqa: E731
+    run = f"([nu, changes]) => ({RUN})(['c-lubricant', nu, changes])"
+
+    def show(nu, **changes):
+        found = explorer.evaluate(run, [nu, changes])
+        return found["extremes"][0], found["loss"]
+
     assert show(0.75)[1] < 0.05
     assert 0.48 < show(0.79)[1] < 0.55
     assert show(0.75, initial_displacement=-1)[0] > 3
-    for start, jump in (({}, 0.77), ({"initial_phase": 0}, 0.745)):
+    for start, jump in (
+        ({}, 0.77),
+        ({"initial_phase": 0}, 0.745),
+        ({"initial_displacement": -1}, 0.706),
+    ):
         assert show(jump - 0.005, **start)[0] < 3 < show(jump + 0.0025, **start)[0]
+    points = explorer.evaluate("gearmesh.studySpecialPoints('c-lubricant')")
+    told = [(point["kind"], round(point["nu"], 3)) for point in points]
+    assert {("fold", 0.706), ("grazing_front", 0.791), ("fold", 0.805)} <= {*told}
 
 
 def test_changed_parameters_are_swept(explorer):
@@ -264,7 +277,7 @@ def test_numbers_and_pictures_can_be_saved(explorer):
         "gearmesh.studyDots('c-lubricant').maximum.filter(Boolean).length"
     )
     svg = download(explorer, "#save-svg")
-    texts = [text.text for text in ElementTree.fromstring(svg).iter("{*}text")]
+    texts = [text.text for text in ElementTree.fromstring(svg).findall(".//{*}text")]
     assert {"mesh frequency νₛ", "A", "B", "y′"} <= {*texts}
     picture = Image.open(io.BytesIO(download(explorer, "#save-png"))).convert("RGB")
     assert picture.size == (2400, 1860)
