@@ -74,6 +74,7 @@ rule all:
         PLACES.report,
         PLACES.hashes,
         PLACES.as_expected if PLAN.study.claims else [],
+        [PLACES.branches, PLACES.special_points] if PLAN.study.plan.mechanisms else [],
 
 
 rule data:
@@ -85,6 +86,12 @@ rule data:
 
 include: "workflow/rules/cases.smk"
 include: "workflow/rules/datasets.smk"
+include: "workflow/rules/explorer.smk"
+
+
+if PLAN.study.plan.mechanisms:
+
+    include: "workflow/rules/mechanisms.smk"
 
 
 if PLAN.study.claims:
