@@ -25,13 +25,15 @@ from gearmesh.solvers.full.roots import MAX_DEGREE
 COORDINATES, RATES = 0, 6
 TIME, DIRECTION, SIGNS = range(12, 15)
 Y, V, SWING, BRACKET, GAP, CONTACT, ELASTIC, FRICTION, STIFFNESS, NORMAL = range(15, 25)
-FIRST_FREE = 25
+TRANSMISSION, BEARING_3, BEARING_2 = range(25, 28)
+FIRST_FREE = 28
 """Rows of the table of series.
 
 The first six are the coordinates, the next six their rates. TIME counts mesh periods. DIRECTION is
 the sign of y', SIGNS the product of both signs of eq. (6). V and BRACKET are the rates of Y and
 SWING. GAP is y + s(t). CONTACT and NORMAL are the force of flanks that touch, and what of it acts
-(`gearmesh.model.motion.Forces`).
+(`gearmesh.model.motion.Forces`). TRANSMISSION is the transmission error, BEARING_3 and BEARING_2
+are what the bodies exert on their bearings along the mesh line.
 """
 
 SUM, PRODUCT, WAVE, SINE, ROOT, ROUND, RATE, ACCELERATE = range(8)
@@ -320,9 +322,13 @@ def _record(
         trace.name(FRICTION, mesh.friction)
     trace.name(STIFFNESS, mesh.stiffness)
     trace.name(NORMAL, mesh.normal)
+    trace.name(TRANSMISSION, q[motion.ROTATION_3] + q[motion.ROTATION_2])
+    bearing_3, bearing_2, *_ = motion.bearing_pulls(problem, q, v)
+    trace.name(BEARING_3, bearing_3)
+    trace.name(BEARING_2, bearing_2)
     everything = trace.operations
     needed = _needed(everything[:forced], wanted)
-    outputs = _needed(everything, [STIFFNESS, FRICTION, NORMAL])
+    outputs = _needed(everything, range(STIFFNESS, FIRST_FREE)) | _needed(everything, [FRICTION])
     return [
         [everything[i] for i in sorted(needed) if i < moved],
         [everything[i] for i in sorted(needed) if i >= moved],
