@@ -19,15 +19,14 @@ from gearmesh.study.alternatives import (
     ALTERNATIVES,
     DECLARED,
     KG_PER_N_S2_MM,
-    MM_PER_M,
     excluded_by,
     with_stored,
 )
 from gearmesh.study.parameters import SETTINGS, Parameters
 from gearmesh.study.problem import problem_of
 from gearmesh.study.provenance import DEFAULT, SETTING, STATED, Statement
-from gearmesh.study.relative import resolved
-from gearmesh.study.schema import read_declared, validate
+from gearmesh.study.relative import MM_PER_M, mean_stiffness, resolved
+from gearmesh.study.schema import of_wheels, read_declared, validate
 
 
 class Parameter(NamedTuple):
@@ -59,7 +58,7 @@ class Parameter(NamedTuple):
 
 
 class Pair(Parameters):
-    """A spur gear pair of equal wheels, with the settings of its runs.
+    """A spur gear pair, with the settings of its runs.
 
     `gearmesh.study.parameters` declares the fields; `Pair.parameters` lists them with units.
     Equation numbers are those of the paper.
@@ -166,8 +165,11 @@ class Pair(Parameters):
 
     @property
     def stiffness_mean(self) -> float:
-        """C_s in N/mm, eq. (5)."""
-        return stiffness.mean(self.contact_ratio, self.mesh_stiffness_max, self.stiffness_min)
+        """C_s in N/mm: eq. (5), or the mean of a stiffness that is stated as a table."""
+        return mean_stiffness(
+            *(self.contact_ratio, self.mesh_stiffness_max, self.stiffness_ratio),
+            *(self.stiffness_table, self.tooth_pair_stiffness),
+        )
 
     @property
     def natural_frequency(self) -> float:
@@ -177,7 +179,7 @@ class Pair(Parameters):
     @property
     def resonance_speed(self) -> float:
         """Speed of wheel 3 in rpm at which ν_s = 1: 60 Ω_s/(2π Z_3)."""
-        return 60.0 * self.natural_frequency / (2.0 * math.pi * self.teeth)
+        return 60.0 * self.natural_frequency / (2.0 * math.pi * self.teeth_3)
 
     @property
     def damping_ratio(self) -> float:
@@ -202,11 +204,12 @@ class Pair(Parameters):
     @property
     def inertia(self) -> tuple[float, float]:
         """J_3 and J_2 in kg·m², with m_red = 1/(R_b3²/J_3 + R_b2²/J_2)."""
-        square = (self.base_radius / MM_PER_M) ** 2
         masses = 1.0 + self.mass_ratio, 1.0 + 1.0 / self.mass_ratio
-        return self._as_stated(
-            "inertia", tuple(mass * self.reduced_mass * square for mass in masses)
+        inertias = (
+            mass * self.reduced_mass * (radius / MM_PER_M) ** 2
+            for mass, radius in zip(masses, self.base_radii, strict=True)
         )
+        return self._as_stated("inertia", tuple(inertias))
 
     def _as_stated(self, name: str, computed: Any) -> Any:
         """Return an alternative as it was stated; converting it back would round it."""
@@ -221,9 +224,23 @@ class Pair(Parameters):
         return self.damping_length * self.natural_frequency
 
     @property
+    def teeth_3(self) -> int:
+        """Z_3, the mesh periods in a revolution of wheel 3, which is what revolutions count."""
+        return int(of_wheels(self.teeth)[0])
+
+    @property
+    def base_radii(self) -> tuple[float, float]:
+        """R_b3 and R_b2 in mm."""
+        teeth_3, teeth_2 = of_wheels(self.teeth)
+        return (
+            self.module * teeth_3 / 2 * math.cos(self.pressure_angle),
+            self.module * teeth_2 / 2 * math.cos(self.pressure_angle),
+        )
+
+    @property
     def base_radius(self) -> float:
-        """R_b = m_n Z cos(α)/2 in mm."""
-        return self.module * self.teeth / 2 * math.cos(self.pressure_angle)
+        """R_b3 = m_n Z_3 cos(α)/2 in mm."""
+        return self.base_radii[0]
 
     @property
     def nu_min_ratio(self) -> float:
@@ -242,13 +259,15 @@ class Pair(Parameters):
 
     @property
     def standard_contact_ratio(self) -> float:
-        """Contact ratio of two standard wheels (addendum m_n) with Z teeth and angle α.
+        """Contact ratio of two standard wheels (addendum m_n) with Z_3 and Z_2 teeth, angle α.
 
-        The path of contact over the base pitch: ε = 2 (√(r_a² − r_b²) − r sin α)/(π m_n cos α).
+        The path of contact over the base pitch:
+        ε = Σ (√(r_a² − r_b²) − r sin α)/(π m_n cos α).
         """
-        pitch_radius, angle = self.teeth / 2, self.pressure_angle
-        tip_radius, base_radius = pitch_radius + 1, pitch_radius * math.cos(angle)
-        path = 2 * (math.sqrt(tip_radius**2 - base_radius**2) - pitch_radius * math.sin(angle))
+        path, angle = 0.0, self.pressure_angle
+        for teeth in of_wheels(self.teeth):
+            tip_radius, base_radius = teeth / 2 + 1, teeth / 2 * math.cos(angle)
+            path += math.sqrt(tip_radius**2 - base_radius**2) - teeth / 2 * math.sin(angle)
         return path / (math.pi * math.cos(angle))
 
     def problem(self, variant: Variant, nu: float) -> Problem:
