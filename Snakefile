@@ -49,12 +49,22 @@ wildcard_constraints:
     root=re.escape(os.getcwd()),
 
 
+# Short rules run where Snakemake runs, also on a cluster.
 localrules:
     all,
     data,
     datasets,
     figures,
+    fig1,
+    study_figures,
+    identified_figures,
+    printed,
+    ledger,
+    verdict,
+    notebook_pages,
+    report,
     identify,
+    box,
     hashes,
 
 
@@ -64,6 +74,7 @@ rule all:
         PLACES.report,
         PLACES.hashes,
         PLACES.as_expected if PLAN.study.claims else [],
+        [PLACES.branches, PLACES.special_points] if PLAN.study.plan.mechanisms else [],
 
 
 rule data:
@@ -75,6 +86,12 @@ rule data:
 
 include: "workflow/rules/cases.smk"
 include: "workflow/rules/datasets.smk"
+include: "workflow/rules/explorer.smk"
+
+
+if PLAN.study.plan.mechanisms:
+
+    include: "workflow/rules/mechanisms.smk"
 
 
 if PLAN.study.claims:

@@ -114,7 +114,6 @@ def wait_until_idle(folder: Path) -> None:
     pytest.skip(f"Slurm does not start on this machine: {found.stdout}{found.stderr}{logs}")
 
 
-@pytest.mark.skip(reason="not seen to end since the cases are one job for each letter of Tab. 1")
 @pytest.mark.timeout(900)
 def test_slurm_gives_the_bytes_of_a_local_run(slurm, smoke: Project, tmp_path: Path):
     project = smoke.copy(tmp_path / "project")

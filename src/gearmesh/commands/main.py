@@ -119,7 +119,7 @@ def _add_runs(commands: "argparse._SubParsersAction[_Parser]", pair: _Parser) ->
         "simulate", parents=[pair, run], help="integrate one run and write its time course"
     )
     simulate.add_argument("--variant", required=True, help="see 'gearmesh variants'")
-    simulate.add_argument("--nu", required=True, help="mesh frequency nu_s")
+    simulate.add_argument("--nu", required=True, help="mesh frequency nu_s, or '3000 rpm'")
     simulate.set_defaults(run=_simulate)
 
     sweep = commands.add_parser(
@@ -129,7 +129,7 @@ def _add_runs(commands: "argparse._SubParsersAction[_Parser]", pair: _Parser) ->
         "--variant", required=True, nargs="+", help="one or several, see 'gearmesh variants'"
     )
     sweep.add_argument(
-        "--nu", required=True, metavar="START:STOP:STEP", help="mesh frequencies nu_s"
+        "--nu", required=True, metavar="START:STOP:STEP", help="mesh frequencies nu_s, or speeds"
     )
     sweep.add_argument(
         "--direction",
@@ -153,7 +153,7 @@ def _start_option() -> _Parser:
 def _add_orbits(commands: "argparse._SubParsersAction[_Parser]", pair: _Parser) -> None:
     near = _Parser(add_help=False, parents=[_start_option()])
     near.add_argument("--variant", required=True, help="see 'gearmesh variants'")
-    near.add_argument("--nu", required=True, help="mesh frequency nu_s")
+    near.add_argument("--nu", required=True, help="mesh frequency nu_s, or '3000 rpm'")
     near.add_argument(
         "--periods", metavar="N", default="1", help="least period in mesh periods (default: 1)"
     )

@@ -1,4 +1,4 @@
-"""One case in one NetCDF-4 file: how it is laid out, written and read.
+"""One case in one NetCDF file: how it is laid out, written and read.
 
 `FIELDS` is the layout. A `Record` holds a case as its file does: variable name -> array, so what
 is read from a file is written again with the same bytes. A file states in its attributes how it
@@ -6,7 +6,6 @@ was made (`attributes`). Manifests show whether it is still as it was written
 (`gearmesh.data.manifest`).
 """
 
-import contextlib
 import functools
 import hashlib
 from collections.abc import Iterator, Mapping
@@ -14,17 +13,17 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-import netCDF4
 import numpy as np
 
-from gearmesh.data import provenance, writing
-from gearmesh.errors import InputError
+from gearmesh.data import classic, provenance
+from gearmesh.data.classic import Variable
 from gearmesh.solvers.response import STATUSES, Response
 from gearmesh.study.cases import Case
 from gearmesh.study.pair import Pair
 
 REGIMES = {1: "normal_mesh", 0: "contact_loss", -1: "inverse_mesh"}
-EXTREMUM_KINDS = {1: "maximum", -1: "minimum"}
+NO_EXTREMUM = 0
+EXTREMUM_KINDS = {1: "maximum", -1: "minimum", NO_EXTREMUM: "none"}
 
 Record = dict[str, np.ndarray]
 """A case as its file holds it: variable name -> array."""
@@ -127,12 +126,21 @@ def record(response: Response, pair: Pair) -> Record:
     columns: Record = {}
     for field, value in _values(response):
         array = np.asarray(field.fill if value is None else value, field.kind)
-        if field.dimension == "boundary" and array.size == 0:
-            array = np.full(boundaries(pair), np.nan)  # of a run that failed
+        if field.dimension and array.size == 0:  # of a run that failed
+            # The format has no dimension of length 0, so a value that is absent stands for none.
+            size = boundaries(pair) if field.dimension == "boundary" else 1
+            array = np.full(size, absent(field), field.kind)
         if field.relative:
             columns[field.relative] = array
         columns[field.name] = array * scales[field.unit] if field.unit in scales else array
     return columns
+
+
+def absent(field: Field) -> float:
+    """Return the value of a field where there is none."""
+    if field.kind == "f8":
+        return np.nan
+    return NO_EXTREMUM if field.name == "extremum_kind" else MISSING
 
 
 def boundaries(pair: Pair) -> int:
@@ -175,7 +183,7 @@ def case_digest(pair: Pair, case: Case) -> str:
 
 @functools.cache
 def _common_digest() -> str:
-    layout = provenance.digest([Path(__file__)])
+    layout = provenance.digest([Path(__file__), Path(classic.__file__)])
     return f"{layout} {provenance.physics_digest()} {provenance.versions()}"
 
 
@@ -219,34 +227,25 @@ def write_case(path: Path | str, attributes: Mapping[str, str | float], columns:
     columns : Record
         See `record`.
     """
-    path = Path(path)
-    with created(path) as file:
-        file.setncatts(attributes)
-        fields = [field for field in (*FIELDS, *SAMPLE_FIELDS) if field.name in columns]
-        for field in fields:
-            if field.dimension and field.dimension not in file.dimensions:
-                file.createDimension(field.dimension, columns[field.name].size)
-        # All definitions before all values: the library would flush at every change between them.
-        variables = [
-            define(file, field, name, (field.dimension,) if field.dimension else ())
-            for field in fields
-            for name in (field.name, field.relative)
-            if name
-        ]
-        for variable in variables:
-            variable[...] = columns[variable.name]
+    variables = {
+        name: variable(field, name, columns[name], (field.dimension,) if field.dimension else ())
+        for field in (*FIELDS, *SAMPLE_FIELDS)
+        if field.name in columns
+        for name in (field.name, field.relative)
+        if name
+    }
+    classic.write(Path(path), attributes, variables)
 
 
-def define(
-    file: netCDF4.Dataset,
-    field: Field,
-    name: str,
-    dimensions: tuple[str, ...],
-    **storage: Any,
-) -> "netCDF4.Variable[Any]":
-    """Create the variable of a field, or of its twin, with its attributes."""
-    variable = file.createVariable(name, field.kind, dimensions, fill_value=field.fill, **storage)
-    relative = name != field.name
+def variable(field: Field, name: str, values: np.ndarray, dimensions: tuple[str, ...]) -> Variable:
+    """Return the variable of a field, or of its twin, for a file."""
+    fill = {} if field.fill is None else {"_FillValue": np.asarray(field.fill, field.kind)}
+    stated = fill | variable_attributes(field, relative=name != field.name)
+    return Variable(np.asarray(values, field.kind), dimensions, stated)
+
+
+def variable_attributes(field: Field, relative: bool = False) -> dict[str, Any]:
+    """Return the CF attributes of a field, or of its twin in static deflections."""
     stated: dict[str, Any] = {
         "units": "1" if relative else field.unit,
         "long_name": field.long_name + (", in static deflections y_st" if relative else ""),
@@ -254,32 +253,7 @@ def define(
     if field.flags:
         stated["flag_values"] = np.array(list(field.flags), field.kind)
         stated["flag_meanings"] = " ".join(field.flags.values())
-    variable.setncatts(stated)
-    variable.set_auto_maskandscale(False)
-    return variable
-
-
-@contextlib.contextmanager
-def created(path: Path) -> Iterator[netCDF4.Dataset]:
-    """Open a NetCDF-4 file that comes into being whole when the context ends.
-
-    Parameters
-    ----------
-    path : Path
-        The file; its folder is made if it is missing.
-
-    Raises
-    ------
-    InputError
-        If it cannot be written; the message is one line with the reason.
-    """
-    with (
-        writing.replacing(path) as temporary,
-        netCDF4.Dataset(temporary, "w", format="NETCDF4") as file,
-    ):
-        # All values are written, so filling them first would only cost a second pass.
-        file.set_fill_off()
-        yield file
+    return stated
 
 
 def read_case(path: Path | str) -> tuple[dict[str, str | float], Record]:
@@ -293,12 +267,8 @@ def read_case(path: Path | str) -> tuple[dict[str, str | float], Record]:
     Raises
     ------
     InputError
-        If there is no such file, or it is not NetCDF.
+        If there is no such file, or it is damaged.
     """
-    try:
-        with netCDF4.Dataset(path) as file:
-            file.set_auto_mask(False)
-            columns = {name: np.asarray(variable[...]) for name, variable in file.variables.items()}
-            return file.__dict__, columns
-    except (OSError, RuntimeError):
-        raise InputError(f"{path}: missing or damaged; allowed is a case file") from None
+    with classic.opened(path) as file:
+        columns = {name: classic.values(found) for name, found in file.variables.items()}
+        return classic.attributes(file), columns

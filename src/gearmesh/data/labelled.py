@@ -8,7 +8,15 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from gearmesh.data.casefile import FIELDS, SAMPLE_FIELDS, Field, Record, attributes, record
+from gearmesh.data.casefile import (
+    FIELDS,
+    SAMPLE_FIELDS,
+    Field,
+    Record,
+    attributes,
+    record,
+    variable_attributes,
+)
 from gearmesh.errors import InputError
 from gearmesh.model.problem import Branches, Problem, State
 from gearmesh.solvers.response import Response
@@ -17,18 +25,6 @@ from gearmesh.study.pair import Pair
 
 _FINAL_STATE = "final_state"
 _COUNTS = {"i1": -1, "i4": -1}
-
-
-def variable_attributes(field: Field, relative: bool = False) -> dict[str, object]:
-    """Return the CF attributes of a field, or of its twin in static deflections."""
-    stated: dict[str, object] = {
-        "units": "1" if relative else field.unit,
-        "long_name": field.long_name + (", in static deflections y_st" if relative else ""),
-    }
-    if field.flags:
-        stated["flag_values"] = np.array(list(field.flags), field.kind)
-        stated["flag_meanings"] = " ".join(field.flags.values())
-    return stated
 
 
 def run_dataset(response: Response, pair: Pair, case: Case) -> xr.Dataset:

@@ -20,6 +20,10 @@ CHECKED = ("printed", *NOTEBOOK_NAMES)
 """The checks of claims: one for the printed numbers, and one for each notebook."""
 
 
+MECHANISMS = ("basins", "phases", "sweeps", "design_map", "lyapunov", "special_curves")
+"""Datasets about what lies behind the curves, besides the branches and their special points."""
+
+
 def nu_label(nu: float) -> str:
     """Write a frequency for a file name: 4 decimals, more only where this one needs them.
 
@@ -75,6 +79,16 @@ class Places:
         return self.folder / "datasets" / "bifurcation.nc"
 
     @property
+    def branches(self) -> Path:
+        """Branches of orbits over ν_s."""
+        return self.folder / "datasets" / "branches.nc"
+
+    @property
+    def special_points(self) -> Path:
+        """Special points of the branches, a list."""
+        return self.folder / "datasets" / "special_points.json"
+
+    @property
     def thresholds(self) -> Path:
         """Thresholds, located by refinement in ν_s."""
         return self.folder / "datasets" / "thresholds.json"
@@ -93,6 +107,11 @@ class Places:
     def report(self) -> Path:
         """The report page."""
         return self.folder / "report" / "index.html"
+
+    @property
+    def explorer(self) -> Path:
+        """The page with which the results can be explored."""
+        return self.folder / "report" / "explorer.html"
 
     @property
     def hashes(self) -> Path:
@@ -121,6 +140,14 @@ class Places:
     def batch(self, letter: str) -> Path:
         """Return the batch file of a letter of Tab. 1, from which the datasets are made."""
         return self.folder / "batches" / f"{letter}.nc"
+
+    def orbits(self, letter: str) -> tuple[Path, Path]:
+        """Return the branches and the special points of a letter of Tab. 1."""
+        return self.folder / "orbits" / f"{letter}.nc", self.folder / "orbits" / f"{letter}.json"
+
+    def mechanism(self, name: str) -> Path:
+        """Return a dataset about what lies behind the curves."""
+        return self.folder / "datasets" / f"{name}.nc"
 
     def figure_files(self, name: str) -> tuple[Path, Path]:
         """Return the PNG and the SVG file of a figure."""

@@ -16,10 +16,16 @@ Batch = Callable[[np.ndarray], np.ndarray]
 """Function from points, shape (n,), to values, shape (n,)."""
 
 
-def _cut(low: float, high: float) -> np.ndarray:
-    places = np.linspace(low, high, PARTS + 1)
-    places[0], places[-1] = low, high
-    return places
+def _ends(low: float, high: float) -> np.ndarray:
+    points = np.linspace(low, high, PARTS + 1)
+    points[0], points[-1] = low, high
+    return points
+
+
+def _cut(low: float, high: float, width: float) -> np.ndarray | None:
+    """Return the ends of the pieces; None at `width`, or where floating point cannot tell them."""
+    points = _ends(low, high)
+    return points if high - low > width and np.all(np.diff(points) > 0) else None
 
 
 def refine_change(holds: Batch, low: float, high: float, width: float) -> tuple[float, float]:
@@ -49,13 +55,10 @@ def refine_change(holds: Batch, low: float, high: float, width: float) -> tuple[
     at_low, at_high = holds(np.array([low, high]))
     if bool(at_low) == bool(at_high):
         raise ValueError(f"nothing changes between {low} and {high}")
-    while high - low > width:
-        places = _cut(low, high)
-        if not np.all(np.diff(places) > 0):
-            break
-        changed = holds(places[1:-1]) != at_low
+    while (points := _cut(low, high, width)) is not None:
+        changed = holds(points[1:-1]) != at_low
         first = int(np.argmax(changed)) if changed.any() else PARTS - 1
-        low, high = places[first], places[first + 1]
+        low, high = points[first], points[first + 1]
     return float(low), float(high)
 
 
@@ -78,17 +81,14 @@ def refine_step(values: Batch, low: float, high: float, width: float) -> tuple[f
         stays the same while the piece shrinks; on a slope, however steep, the step shrinks too.
     """
     at_low, at_high = values(np.array([low, high]))
-    while high - low > width:
-        places = _cut(low, high)
-        if not np.all(np.diff(places) > 0):
-            break
-        course = np.concatenate([[at_low], values(places[1:-1]), [at_high]])
-        sizes = np.abs(np.diff(course))
+    while (points := _cut(low, high, width)) is not None:
+        curve = np.concatenate([[at_low], values(points[1:-1]), [at_high]])
+        sizes = np.abs(np.diff(curve))
         if np.all(np.isnan(sizes)):
             return float(low), float(high), float("nan")
         piece = int(np.nanargmax(sizes))
-        low, high = places[piece], places[piece + 1]
-        at_low, at_high = course[piece], course[piece + 1]
+        low, high = points[piece], points[piece + 1]
+        at_low, at_high = curve[piece], curve[piece + 1]
     return float(low), float(high), float(at_high - at_low)
 
 
@@ -101,9 +101,9 @@ def refine_peak(values: Batch, low: float, high: float, width: float) -> tuple[f
         (point, value) of the greatest value found; the point is accurate to half of `width`.
     """
     while True:
-        places = _cut(low, high)
-        course = np.nan_to_num(values(places), nan=-np.inf)
-        best = int(np.argmax(course))
-        if high - low <= width or not np.all(np.diff(places) > 0):
-            return float(places[best]), float(course[best])
-        low, high = places[max(best - 1, 0)], places[min(best + 1, PARTS)]
+        points = _ends(low, high)
+        curve = np.nan_to_num(values(points), nan=-np.inf)
+        best = int(np.argmax(curve))
+        if _cut(low, high, width) is None:
+            return float(points[best]), float(curve[best])
+        low, high = points[max(best - 1, 0)], points[min(best + 1, PARTS)]

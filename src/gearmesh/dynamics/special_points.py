@@ -23,6 +23,9 @@ KINDS = ("fold", "flip", "torus", "branch_point", "grazing_front", "grazing_back
 Test = tuple[str, Callable[[Point], float]]
 """A kind, and a function of the points of a branch that passes 0 at a special point."""
 
+Inner = tuple[Point, Point, float]
+"""Points just inside the two ends of a piece of a branch, and their distance from the ends."""
+
 _OFFSET = 1e-5
 _NARROWEST = 1e-6  # piece of a branch; roots of one test closer than this are not separated
 _NARROWEST_PIECE = 1e-11  # between two grazings, in which multipliers are tested
@@ -53,9 +56,14 @@ class SpecialPoint:
     orbit: Orbit
 
 
-def search(curve: Curve, left: Point, right: Point, tests: list[Test]) -> list[tuple[str, Point]]:
-    """Return where tests pass 0 between two neighbouring points of a curve, in their order."""
-    found = _search(curve, left, right, tests)
+def search(
+    curve: Curve, left: Point, right: Point, tests: list[Test], inner: Inner | None = None
+) -> list[tuple[str, Point]]:
+    """Return where tests pass 0 between two neighbouring points of a curve, in their order.
+
+    `inner` is what `_inner_points` returns for them, if it is known.
+    """
+    found = _search(curve, left, right, tests, inner or _inner_points(curve, left, right))
     return sorted(found, key=lambda item: float(left.tangent @ item[1].place))
 
 
@@ -65,23 +73,29 @@ def special_points(curve: Curve, left: Point, right: Point) -> list[tuple[str, P
     Multipliers have a root singularity where the orbit grazes, so they are tested in the pieces
     between the grazings and not across them.
     """
-    events = search(curve, left, right, _event_tests(left))
+    inner = _inner_points(curve, left, right)
+    events = search(curve, left, right, _event_tests(left), inner)
     ends = [left, *(point for _, point in events), right]
     bifurcations = [
         found
         for start, end in pairwise(ends)
         if _length(start, end) > _NARROWEST_PIECE
-        for found in search(curve, start, end, _bifurcation_tests())
+        for found in search(curve, start, end, _bifurcation_tests(), None if events else inner)
     ]
     order = [*events, *bifurcations]
     return sorted(order, key=lambda item: float(left.tangent @ item[1].place))
 
 
-def _search(
-    curve: Curve, left: Point, right: Point, tests: list[Test]
-) -> Iterator[tuple[str, Point]]:
+def _inner_points(curve: Curve, left: Point, right: Point) -> Inner:
+    """Return an offset, and the points that far inside the two ends: they give the slopes there."""
     offset = min(_OFFSET, 0.1 * _length(left, right))
-    ahead, behind = curve.step(left, offset), curve.step(right, -offset)
+    return curve.step(left, offset), curve.step(right, -offset), offset
+
+
+def _search(
+    curve: Curve, left: Point, right: Point, tests: list[Test], inner: Inner
+) -> Iterator[tuple[str, Point]]:
+    ahead, behind, offset = inner
     for kind, test in tests:
         pieces = [(left, ahead, behind, right, offset)]
         while pieces:

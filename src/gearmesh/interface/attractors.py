@@ -30,7 +30,7 @@ _MOST_REVOLUTIONS = 100_000
 def attractors(
     pair: Pair,
     variant: str | Variant,
-    nu: float,
+    nu: float | str,
     *,
     starts: Sequence[Start] | None = None,
     revolutions: int = TRANSIENT,
@@ -43,8 +43,8 @@ def attractors(
         The gear pair, without eccentricity, profile deviation and Fourier stiffness.
     variant : str or Variant
         Which damping terms act where.
-    nu : float
-        Mesh frequency ν_s.
+    nu : float or str
+        Mesh frequency ν_s, or the speed of wheel 3, as ``"3000 rpm"``.
     starts : sequence of tuple, optional
         Initial conditions (y, dy/dτ_s), each with its unit or as a number of static deflections.
         By default the pair's own and a grid of 36.
@@ -97,7 +97,7 @@ def attractors(
 def basins(
     pair: Pair,
     variant: str | Variant,
-    nu: float,
+    nu: float | str,
     *,
     y: object,
     v: object = 0.0,

@@ -15,6 +15,7 @@ from gearmesh.interface.lengths import with_lengths
 from gearmesh.interface.orbits import Orbit
 from gearmesh.model.problem import Problem
 from gearmesh.study import units
+from gearmesh.study.alternatives import DECLARED
 from gearmesh.study.pair import Pair
 
 Limits = tuple[object, object]
@@ -68,6 +69,14 @@ class Branch:
     def ends(self) -> tuple[str, str]:
         """Why the branch ends at its first and at its last point."""
         return self.found.ends
+
+    def at(self, point: int) -> Orbit:
+        """Return the orbit at a point of the branch."""
+        found, orbit = self.found.orbits[point], self.orbit
+        pair = orbit.pair
+        if self.parameter != "nu":
+            pair = _replaced(pair, self.parameter, float(self.found.values[point]))
+        return Orbit(pair, orbit.variant, found.problem.nu, found)
 
     @cached_property
     def special(self) -> list[SpecialPoint]:
@@ -220,6 +229,8 @@ def _family(orbit: Orbit, names: tuple[str, ...]) -> tuple[Family, tuple[float, 
                 pair = _replaced(pair, name, value)
         return pair.problem(orbit.variant, nu)
 
+    if names == ("nu",):  # no parameter of the pair changes, so it need not be read again
+        return branches.field_family(orbit.found.problem, "nu"), values
     made: Callable[..., Problem] = problem
     return made, values
 
@@ -233,11 +244,11 @@ def _declared(pair: Pair, name: str) -> tuple[str, str]:
     """Return unit and meaning of a parameter that can be followed."""
     if name == "nu":
         return "1", "mesh frequency nu_s"
-    for row in pair.parameters:
-        if row.name == name:
-            if isinstance(row.value, float):
-                return row.unit, row.description
-            raise InputError(f"{name}: found {row.value!r}; allowed are single real numbers")
+    if name in DECLARED:
+        value = getattr(pair, name)
+        if isinstance(value, float):
+            return DECLARED[name]["unit"], DECLARED[name]["description"]
+        raise InputError(f"{name}: found {value!r}; allowed are single real numbers")
     raise InputError(f"{name}: no such parameter; 'gearmesh parameters' lists all")
 
 

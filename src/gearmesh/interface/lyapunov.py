@@ -23,7 +23,7 @@ _MOST_PERIODS = 10_000_000
 def lyapunov_spectrum(
     pair: Pair,
     variant: str | Variant,
-    nu: float | Sequence[float] | np.ndarray,
+    nu: float | str | Sequence[float | str] | np.ndarray,
     *,
     start: Start | None = None,
     periods: int = 1000,
@@ -36,7 +36,7 @@ def lyapunov_spectrum(
     pair, variant
         As for `attractors`.
     nu : array_like
-        One mesh frequency ν_s or several.
+        One mesh frequency ν_s, or speed of wheel 3, or several.
     start : tuple, optional
         Initial condition (y, dy/dτ_s), as for `simulate`; by default that of the pair.
     periods : int
@@ -63,7 +63,7 @@ def lyapunov_spectrum(
     >>> bool(found.exponents[0, 0] < 0.0)
     True
     """
-    nus = read_frequencies(nu)
+    nus = read_frequencies(nu, pair)
     check_whole("periods", periods, 8, _MOST_PERIODS)
     check_whole("transient", transient, 0, _MOST_PERIODS)
     begun = with_settings(pair, start)

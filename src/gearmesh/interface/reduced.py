@@ -8,9 +8,9 @@ from gearmesh.solvers.reduced.runs import is_reducible
 from gearmesh.study.pair import Pair
 
 
-def reduced_problem(pair: Pair, variant: str | Variant, nu: float) -> Problem:
+def reduced_problem(pair: Pair, variant: str | Variant, nu: float | str) -> Problem:
     """Return what a request states; raises InputError if it is not of the reduced system."""
-    problem = pair.problem(read_variant(variant), read_frequency(nu))
+    problem = pair.problem(read_variant(variant), read_frequency(nu, pair))
     if not is_reducible(problem):
         raise InputError(
             "pair: found run-out, profile deviation or Fourier stiffness; allowed here are pairs "

@@ -25,10 +25,11 @@ from gearmesh.pipeline import locks
 from gearmesh.pipeline.messages import say
 from gearmesh.pipeline.stages import STAGES, job_name
 from gearmesh.reproduction.claims import Claim, load_ledger
-from gearmesh.study.cases import Case, Study
+from gearmesh.study.cases import Case, Mechanisms, Study
 from gearmesh.study.loading import load_study
 
 _TEMPLATES = provenance.PACKAGE / "report" / "templates"
+_SCRIPTS = provenance.PACKAGE / "report" / "explorer" / "scripts"
 _STYLE = provenance.PACKAGE / "reproduction" / "figures" / "gearmesh.mplstyle"
 
 
@@ -65,6 +66,13 @@ class Plan:
     def ledger(self) -> list[Claim]:
         """The claims that the study is checked against; a study of one's own has none."""
         return load_ledger(self.study.claims) if self.study.claims else []
+
+    @property
+    def mechanisms(self) -> Mechanisms:
+        """The orbits and attractors that the study asks for."""
+        if self.study.plan.mechanisms is None:
+            raise KeyError("mechanisms")
+        return self.study.plan.mechanisms
 
     @cached_property
     def designs(self) -> Settings:
@@ -131,7 +139,7 @@ class Plan:
         if held is None or held.made_of != self._made_of(stage, arguments):
             return "other parameters or code"
         faults = _faults(held.written, hashes) | _faults(held.read, hashes)
-        faults |= {name: "not of this study" for name in self._foreign(held, arguments)}
+        faults |= {name: "not of this study" for name in self._foreign(stage, held, arguments)}
         return _named(self.places, faults) if faults else ""
 
     def _made_of(self, stage: str, arguments: Sequence[str]) -> str | None:
@@ -141,9 +149,9 @@ class Plan:
         except (KeyError, TypeError):
             return None
 
-    def _foreign(self, found: manifest.Manifest, arguments: Sequence[str]) -> list[str]:
+    def _foreign(self, stage: str, found: manifest.Manifest, arguments: Sequence[str]) -> list[str]:
         """Return case files that none of the study's jobs has written."""
-        if len(arguments) != 1 or arguments[0] not in self.letters:
+        if stage != "cases":
             return []
         there = self.places.cases.glob(f"{arguments[0]}-*/*")
         names = (path.relative_to(self.places.folder).as_posix() for path in there)
@@ -190,6 +198,10 @@ _COMMITTED: dict[str, Callable[[], list[Path]]] = {
     "identified_figures": lambda: [_STYLE, layout.IDENTIFIED, layout.SETTINGS],
     "study_figures": lambda: [_STYLE],
     "notebook_pages": lambda: [_TEMPLATES / "notebook.html.j2", _TEMPLATES / "report.css"],
+    "explorer": lambda: [
+        *(_TEMPLATES / name for name in ("explorer.html.j2", "explorer.css", "report.css")),
+        *sorted(_SCRIPTS.rglob("*.js")),
+    ],
     "report": lambda: [
         *_templates(),
         *(paths.CAPTIONS / f"{name}.rst" for name in paths.FIGURE_NAMES),
@@ -213,6 +225,14 @@ _FACTS: dict[str, Callable[..., object]] = {
     ),
     "datasets": lambda plan: (plan.study.title, plan.pair, _grid(plan.study)),
     "thresholds": lambda plan: (plan.pair, plan.study.variants),
+    "orbits": lambda plan, letter: (
+        *(plan.study.title, plan.pair, plan.mechanisms.by_letter[letter]),
+        (plan.study.nu[0], plan.study.nu[-1]),
+    ),
+    **{
+        stage: lambda plan: (plan.study.title, plan.pair, plan.mechanisms)
+        for stage in ("branches", "basins", "sweeps", "lyapunov", "special_curves")
+    },
     "figure": lambda plan, name: (
         *(plan.study.title, plan.pair, plan.study.time_courses),
         _of_figure(plan.ledger, name),
@@ -220,6 +240,7 @@ _FACTS: dict[str, Callable[..., object]] = {
     "identified_figures": lambda plan: sorted(stated(plan.study.pair).items()),
     "printed": lambda plan: (plan.pair, _of_figure(plan.ledger, "printed")),
     "ledger": lambda plan: plan.ledger,
+    "explorer": lambda plan: _statements(plan.study),
     "report": lambda plan: _statements(plan.study),
     "study_report": lambda plan: _statements(plan.study),
     "samples": lambda plan, design, index: (

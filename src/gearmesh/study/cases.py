@@ -47,6 +47,21 @@ class StrongDamping(Section):
         return replace(variant(self.variant), factor=self.factor)
 
 
+class Mechanisms(Section):
+    """The orbits and attractors that are computed behind the response curves."""
+
+    variants: tuple[VariantName, ...] = Field(description="the variants whose orbits are followed")
+    resolution: int = Field(
+        64, description="points along each axis of basins and maps", ge=2, le=1000
+    )
+
+    @property
+    def by_letter(self) -> dict[str, list[str]]:
+        """The variants of each letter of Tab. 1."""
+        letters = dict.fromkeys(name[0] for name in self.variants)
+        return {one: [name for name in self.variants if name[0] == one] for one in letters}
+
+
 class Plan(Section):
     """The cases of a study, and the files that are written."""
 
@@ -63,6 +78,9 @@ class Plan(Section):
     strong_damping: StrongDamping | None = Field(None, description="a more damped variant")
     time_courses: dict[str, tuple[Nu, ...]] = Field(
         default_factory=dict, description="frequencies with a time course, for each variant"
+    )
+    mechanisms: Mechanisms | None = Field(
+        None, description="orbits and attractors behind the response curves; none if left out"
     )
     case_files: bool = Field(
         True, description="whether cases without a time course have files of their own too"

@@ -33,6 +33,8 @@ _NAMES = {
     "N": "a force",
     "N/mm": "a stiffness",
     "N*s/mm": "a damping coefficient",
+    "N*m": "a torque",
+    "kg*m^2": "an inertia",
 }
 
 

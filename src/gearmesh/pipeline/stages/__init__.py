@@ -4,15 +4,23 @@ A stage imports within its body what only it needs. A job therefore starts quick
 only if something that it uses changes (`gearmesh.data.provenance.code_digest`).
 """
 
-from gearmesh.pipeline.stages import cases, claims, datasets, figures, identify, report
+from gearmesh.pipeline.stages import cases, claims, datasets, figures, identify, mechanisms, report
 
 STAGES = {
     stage.__name__: stage
     for stage in (
         *(cases.cases, cases.case, datasets.datasets, datasets.thresholds),
         *(figures.fig1, figures.figure, figures.identified_figures, figures.study_figures),
+        *(mechanisms.orbits, mechanisms.branches, mechanisms.basins, mechanisms.sweeps),
+        *(mechanisms.lyapunov, mechanisms.special_curves),
         *(claims.printed, claims.ledger, claims.verdict),
-        *(report.notebook_pages, report.report, report.study_report, report.hashes),
+        *(
+            report.notebook_pages,
+            report.explorer,
+            report.report,
+            report.study_report,
+            report.hashes,
+        ),
         *(identify.samples, identify.box, identify.all_samples, identify.identified),
         identify.identification_notebook,
     )

@@ -62,7 +62,8 @@ def all_samples(study: Study, places: Places) -> list[Path]:
 def identified(study: Study, places: Places) -> list[Path]:
     """Infer the open parameters from all samples, and check the inference on itself."""
     from gearmesh.identification import boxes, layout, store, table
-    from gearmesh.identification.findings import Analysis, findings
+    from gearmesh.identification.analysis import Analysis
+    from gearmesh.identification.findings import findings
     from gearmesh.identification.settings import load_settings
     from gearmesh.identification.survey import tested_claims
     from gearmesh.reproduction.claims import load_ledger

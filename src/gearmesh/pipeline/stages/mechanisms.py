@@ -1,0 +1,111 @@
+"""Compute what lies behind the response curves: branches of orbits, basins, sweeps and more."""
+
+from collections.abc import Collection
+from pathlib import Path
+
+from gearmesh.data.paths import Places
+from gearmesh.study.cases import Mechanisms, Study
+
+
+def orbits(study: Study, places: Places, letter: str) -> list[Path]:
+    """Follow the orbits of the variants of one letter of Tab. 1, and locate their special points.
+
+    The special points are located a second time without friction and on rigid supports.
+    """
+    import json
+
+    from gearmesh.data.writing import write_text
+    from gearmesh.reproduction.mechanisms import tables
+    from gearmesh.reproduction.mechanisms.orbits import WITHOUT_SUPPORTS, branches
+
+    limits = float(study.nu[0]), float(study.nu[-1])
+    pairs = [(study.pair, {}), (study.pair.replace(**WITHOUT_SUPPORTS), WITHOUT_SUPPORTS)]
+    made, rows = [], []
+    for pair, changed in pairs:
+        for name in _mechanisms(study).by_letter[letter]:
+            found = branches(pair, name, limits)
+            rows += tables.rows(name, found, changed)
+            made += [] if changed or not found else [tables.table(name, found)]
+    dataset, points = places.orbits(letter)
+    tables.write(dataset, tables.joined(made), study, "branches of orbits")
+    write_text(points, json.dumps(rows))
+    return [dataset, points]
+
+
+def branches(study: Study, places: Places) -> list[Path]:
+    """Put the branches and the special points of all letters together."""
+    import json
+
+    from gearmesh.data.datasets import open_dataset
+    from gearmesh.data.writing import write_text
+    from gearmesh.reproduction.mechanisms import tables
+
+    letters = _mechanisms(study).by_letter
+    _remove_other_letters(places, letters)
+    files = [places.orbits(letter) for letter in letters]
+    made = tables.joined(open_dataset(dataset) for dataset, _ in files)
+    tables.write(places.branches, made, study, "branches of orbits")
+    rows = [row for _, points in files for row in json.loads(points.read_text(encoding="utf-8"))]
+    rows.sort(key=lambda row: "parameters" in row)
+    write_text(places.special_points, json.dumps(rows, indent=1) + "\n")
+    return [places.branches, places.special_points]
+
+
+def basins(study: Study, places: Places) -> list[Path]:
+    """Find what the starts and the starting phases of c-• lead to."""
+    from gearmesh.data.datasets import open_dataset
+    from gearmesh.reproduction.mechanisms import starts, tables
+
+    resolution = _mechanisms(study).resolution
+    known = open_dataset(places.branches)
+    made = starts.basins(study.pair, known, resolution), starts.phases(study.pair, resolution)
+    files = [places.mechanism("basins"), places.mechanism("phases")]
+    for file, dataset in zip(files, made, strict=True):
+        tables.write(file, dataset, study, file.stem)
+    return files
+
+
+def sweeps(study: Study, places: Places) -> list[Path]:
+    """Sweep ν_s up and down, for the variants of the study and over the damping."""
+    from gearmesh.reproduction.mechanisms import sweeps, tables
+
+    chosen = _mechanisms(study)
+    swept = sweeps.sweeps(study.pair, chosen.variants)
+    tables.write(places.mechanism("sweeps"), swept, study, "sweeps up and down")
+    mapped = sweeps.design_map(study.pair, chosen.resolution // 2)
+    tables.write(places.mechanism("design_map"), mapped, study, "design map")
+    return [places.mechanism("sweeps"), places.mechanism("design_map")]
+
+
+def lyapunov(study: Study, places: Places) -> list[Path]:
+    """Compute the Lyapunov exponents of the conservative variant."""
+    from gearmesh.reproduction.mechanisms import exponents, tables
+
+    found = exponents.exponents(study.pair, _mechanisms(study).resolution)
+    tables.write(places.mechanism("lyapunov"), found, study, "Lyapunov exponents")
+    return [places.mechanism("lyapunov")]
+
+
+def special_curves(study: Study, places: Places) -> list[Path]:
+    """Follow special points over ν_s and the damping, and over ν_s and the damping length."""
+    import json
+
+    from gearmesh.reproduction.mechanisms import curves, tables
+
+    rows = json.loads(places.special_points.read_text(encoding="utf-8"))
+    found = curves.curves(study.pair, rows)
+    tables.write(places.mechanism("special_curves"), found, study, "curves of special points")
+    return [places.mechanism("special_curves")]
+
+
+def _mechanisms(study: Study) -> Mechanisms:
+    assert study.plan.mechanisms is not None  # without them there are no such rules
+    return study.plan.mechanisms
+
+
+def _remove_other_letters(places: Places, letters: Collection[str]) -> None:
+    """Remove what is left of letters that the study had before."""
+    orbits, manifests = places.orbits("x")[0].parent, places.manifest("x").parent
+    for file in (*orbits.glob("*"), *manifests.glob("orbits-*")):
+        if file.stem.rpartition("-")[2] not in letters:
+            file.unlink()

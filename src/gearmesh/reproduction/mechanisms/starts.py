@@ -1,0 +1,178 @@
+"""What becomes of a start: basins over (y, y'), and the share of starting phases that jump.
+
+Both are measured on runs of c-•, whose second jump is the edge of a basin: below it the motion in
+contact and the resonant orbit with contact loss exist side by side.
+"""
+
+from collections.abc import Iterable, Sequence
+from dataclasses import replace
+from itertools import product
+
+import numpy as np
+import xarray as xr
+
+from gearmesh.interface.lengths import with_lengths
+from gearmesh.model.problem import Problem, State
+from gearmesh.model.variants import variant
+from gearmesh.solvers.response import Response
+from gearmesh.solvers.simulation import simulate
+from gearmesh.study.pair import Pair
+
+VARIANT = "c-lubricant"
+
+BASINS_AT = (0.72, 0.76, 0.785)
+"""Mesh frequencies of the basins: three between the fold and the grazing of the orbit."""
+
+REACH = 4.5
+"""Greatest |y - 1| and |y'| of the starts of a basin, in static deflections."""
+
+REVOLUTIONS = 20
+"""Revolutions after which a basin is judged."""
+
+IN_CONTACT, RESONANT, OTHER = range(3)
+MOTIONS = {
+    IN_CONTACT: "rings_on_and_at_most_grazes",
+    RESONANT: "resonant_orbit_with_contact_loss",
+    OTHER: "another_motion",
+}
+"""What a start leads to."""
+
+_GRAZES = 0.1  # greatest depth below y = 0, in y_st, of motion that at most grazes
+_NEAR = 0.15  # of the extremes of the resonant orbit, in y_st
+
+PHASES_FROM, PHASES_TO, PHASES_STEP = 0.6, 0.85, 0.005
+CHECKED_AFTER = (5, 50)
+"""Revolutions after which the share of starting phases that have jumped is measured."""
+
+JUMPED = 0.05
+"""Least share of contact loss in the last revolution of a run that has jumped (claim F3.5)."""
+
+
+def basins(pair: Pair, branches: xr.Dataset, resolution: int) -> xr.Dataset:
+    """Return what the starts of a grid of y and y' lead to, at three frequencies.
+
+    Parameters
+    ----------
+    pair : Pair
+        The gear pair.
+    branches : xarray.Dataset
+        Its branches, see `gearmesh.reproduction.mechanisms.tables`.
+    resolution : int
+        Starts along each axis.
+    """
+    heights = 1.0 + np.linspace(-REACH, REACH, resolution)
+    rates = np.linspace(-REACH, REACH, resolution)
+    rest = -2.0 * pair.stiffness_mean / pair.bearing_stiffness
+    states = [State(float(y), float(v), rest, 0.0) for y, v in product(heights, rates)]
+    runs = [
+        replace(problem, initial_state=state)
+        for problem in _problems(pair, BASINS_AT, REVOLUTIONS)
+        for state in states
+    ]
+    shape = len(BASINS_AT), resolution, resolution
+    responses = simulate(runs, pair.tolerance, estimate_errors=False)
+    high, low = (np.reshape([_of(one, name) for one in responses], shape) for name in _EXTREMES)
+    dataset = with_lengths(
+        {
+            "y_max": (("nu", "y", "v"), high, "maximum of y in the last revolution"),
+            "y_min": (("nu", "y", "v"), low, "minimum of y in the last revolution"),
+        },
+        pair,
+    )
+    orbits = [resonant_orbit(branches, nu) for nu in BASINS_AT]
+    top, bottom = (np.array(one).reshape(-1, 1, 1) for one in zip(*orbits, strict=True))
+    near = (np.abs(high - top) < _NEAR) & (np.abs(low - bottom) < _NEAR)
+    reached = np.where(near, RESONANT, np.where(low > -_GRAZES, IN_CONTACT, OTHER))
+    flags = {
+        "flag_values": np.array(list(MOTIONS), np.int8),
+        "flag_meanings": " ".join(MOTIONS.values()),
+        "long_name": "motion that the start leads to",
+        "units": "1",
+    }
+    dataset["reached"] = (("nu", "y", "v"), reached.astype(np.int8), flags)
+    axes = {
+        "y": (("y",), heights, "initial relative motion y"),
+        "v": (("v",), rates, "initial velocity dy/dtau_s"),
+    }
+    dataset = dataset.assign_coords(with_lengths(axes, pair).variables)
+    dataset = dataset.assign_coords(nu=_frequencies(BASINS_AT))
+    dataset.attrs = {"variant": VARIANT, "revolutions": REVOLUTIONS}
+    return dataset
+
+
+_EXTREMES = ("y_max", "y_min")
+
+
+def resonant_orbit(branches: xr.Dataset, nu: float) -> tuple[float, float]:
+    """Return y_max and y_min, in y_st, of the stable orbit with contact loss at a frequency."""
+    chosen = (branches["variant"] == VARIANT) & (branches["periods"] == 1)
+    chosen &= (branches["stability"] == 1) & (branches["y_min_rel"] < -_GRAZES)
+    points = branches.isel(point=np.flatnonzero(chosen)).sortby("nu")
+    return tuple(
+        float(np.interp(nu, points["nu"], points[f"{name}_rel"], left=np.nan, right=np.nan))
+        for name in _EXTREMES
+    )  # type: ignore[return-value]
+
+
+def phases(pair: Pair, resolution: int) -> xr.Dataset:
+    """Return what becomes of the paper's start at each starting phase, over ν_s.
+
+    Parameters
+    ----------
+    pair : Pair
+        The gear pair.
+    resolution : int
+        Starting phases, evenly spaced over the mesh period.
+    """
+    count = round((PHASES_TO - PHASES_FROM) / PHASES_STEP) + 1
+    nus = np.round(np.linspace(PHASES_FROM, PHASES_TO, count), 10)
+    starts = np.arange(resolution) / resolution
+    begun = _problems(pair, nus, CHECKED_AFTER[0])
+    runs = [replace(one, initial_phase=float(phase)) for one in begun for phase in starts]
+    measured = []
+    done = 0
+    for revolutions in CHECKED_AFTER:
+        # A run goes on from its end: whole revolutions leave the mesh phase as it is.
+        runs = [replace(one, revolutions=revolutions - done) for one in runs]
+        responses = simulate(runs, pair.tolerance, estimate_errors=False)
+        measured.append([[_of(one, name) for name in _MEASURED] for one in responses])
+        runs = [
+            replace(one, initial_state=response.final_state)
+            for one, response in zip(runs, responses, strict=True)
+        ]
+        done = revolutions
+    shape = len(CHECKED_AFTER), count, resolution, len(_MEASURED)
+    high, loss = np.moveaxis(np.reshape(measured, shape), -1, 0)
+    axes = "revolutions", "nu", "phase"
+    dataset = with_lengths({"y_max": (axes, high, "maximum of y in the last revolution")}, pair)
+    stated = {"units": "1", "long_name": "share of contact loss in the last revolution"}
+    dataset["contact_loss_fraction"] = (axes, loss, stated)
+    stated = {"units": "1", "long_name": "share of the starting phases that have jumped"}
+    dataset["share"] = (axes[:2], (loss >= JUMPED).mean(axis=2), stated)
+    count_of = {"units": "1", "long_name": "revolutions from the start"}
+    phase = {"units": "1", "long_name": "starting phase in the mesh period"}
+    dataset = dataset.assign_coords(
+        nu=_frequencies(nus),
+        revolutions=("revolutions", np.array(CHECKED_AFTER, np.int32), count_of),
+        phase=("phase", starts, phase),
+    )
+    dataset.attrs = {"variant": VARIANT}
+    return dataset
+
+
+_MEASURED = ("y_max", "contact_loss_fraction")
+
+
+def _problems(pair: Pair, nus: Iterable[float], revolutions: int) -> list[Problem]:
+    chosen = variant(VARIANT)
+    one = pair.replace(revolutions=revolutions, kept_revolutions=1)
+    return [one.problem(chosen, float(nu)) for nu in nus]
+
+
+def _of(response: Response, name: str) -> float:
+    value = getattr(response, name)
+    return float("nan") if value is None else float(value)
+
+
+def _frequencies(nus: Sequence[float] | np.ndarray) -> tuple[str, np.ndarray, dict[str, str]]:
+    return "nu", np.asarray(nus, float), {"units": "1", "long_name": "mesh frequency nu_s"}

@@ -1,0 +1,69 @@
+"""Values that are stated as multiples of a scale: ``8 y_st``, ``1000 m_red``, ``0.5 C_s``."""
+
+from collections.abc import Mapping
+from typing import Any
+
+from gearmesh.model import stiffness
+from gearmesh.study import units
+from gearmesh.study.parameters import Parameters
+from gearmesh.study.schema import read_declared, shown
+
+
+def resolved(data: dict[str, Any]) -> dict[str, Any]:
+    """Replace values such as ``8 y_st`` by quantities."""
+    found = dict(data)
+    for scale, unit in units.SCALES.items():
+        relative = [name for name, value in data.items() if units.is_multiple(value, scale)]
+        size = _scale(scale, data, relative[0]) if relative else 0.0
+        for name in relative:
+            found[name] = units.scaled(found[name], scale, size, unit)
+    return found
+
+
+def _scale(scale: str, data: Mapping[str, Any], user: str) -> float:
+    """Return the size of a scale, for `user` and other parameters that are stated in it."""
+    declared = Parameters.declarations()
+
+    def read(parameter: str) -> float:
+        return float(read_parameter(parameter, data, declared, f"{user} is stated in {scale}"))
+
+    if scale == "y_st":
+        return read("static_deflection")
+    if scale == "m_red":
+        return read("reduced_mass")
+    highest = read("mesh_stiffness_max")
+    return stiffness.mean(read("contact_ratio"), highest, read("stiffness_ratio") * highest)
+
+
+def read_parameter(
+    name: str, data: Mapping[str, Any], declared: Mapping[str, Mapping[str, Any]], reason: str
+) -> Any:
+    """Return a parameter, in its unit, that others follow from.
+
+    A mistake in it is reported here, once, and not for each of them.
+
+    Parameters
+    ----------
+    name : str
+        The parameter.
+    data : mapping of str to object
+        What is stated.
+    declared : mapping of str to mapping
+        Unit and range of each parameter.
+    reason : str
+        Why it is needed, for the message.
+
+    Raises
+    ------
+    ValueError
+        If it is missing or wrong; the message begins with its name.
+    """
+    if data.get(name) is None:
+        raise ValueError(f"{name}: missing; {reason}")
+    try:
+        value = read_declared(data[name], declared[name])
+    except ValueError as error:
+        raise ValueError(f"{name}: found {shown(data[name])}; {error}") from None
+    if isinstance(value, tuple) and not declared[name]["of_wheels"]:
+        raise ValueError(f"{name}: found {shown(data[name])}; allowed is a single value")
+    return value

@@ -1,0 +1,16 @@
+# The explorer: a page beside the report with the numbers of the study, and a solver.
+rule explorer:
+    input:
+        read=[PLACES.resonance, PLACES.bifurcation],
+        again=PLAN.again("explorer"),
+    output:
+        PLACES.explorer,
+    log:
+        PLACES.log("explorer"),
+    benchmark:
+        PLACES.benchmark("explorer")
+    params:
+        made_of=PLAN.made_of("explorer"),
+    shell:
+        'python -m gearmesh.pipeline explorer "$STUDY" {params.made_of} --read {input.read}'
+        " 2>&1 | tee {log}"
