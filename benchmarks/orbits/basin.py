@@ -7,7 +7,7 @@ import numpy as np
 
 import gearmesh as gm
 from benchmarks.orbits import settling
-from gearmesh.dynamics.attractors import Basins, basins
+from gearmesh.dynamics.attraction.basins import Basins, basins
 from gearmesh.model.problem import Problem
 from gearmesh.model.variants import variant
 
