@@ -15,7 +15,7 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
 
-from gearmesh.data import batches, casefile, manifest, paths, provenance
+from gearmesh.data import casefile, manifest, paths, provenance
 from gearmesh.data.paths import Places
 from gearmesh.errors import InputError
 from gearmesh.identification import layout
@@ -60,7 +60,7 @@ class Plan:
     @cached_property
     def letters(self) -> dict[str, list[Case]]:
         """The cases of each letter of Tab. 1."""
-        return batches.by_letter(self.study.cases)
+        return {letter: self.study.of_letter(letter) for letter in self.study.letters}
 
     @cached_property
     def ledger(self) -> list[Claim]:
