@@ -264,10 +264,14 @@ def correct(problem: Problem, state: np.ndarray, periods: int = 1) -> Orbit:
 
 
 def _improve(orbit: Orbit) -> Orbit | None:
-    """Return the orbit after one damped correction, or None if no correction improves it."""
+    """Return the orbit after one damped correction, or None if no correction improves it.
+
+    Damping helps far from an orbit. Near one a whole correction fails only because of rounding.
+    """
     correction = newton_correction(orbit.passage, orbit.state)
+    shortest = 1.0 if orbit.residual < LARGEST_RESIDUAL else _SHORTEST_CORRECTION
     share = 1.0
-    while share >= _SHORTEST_CORRECTION:
+    while share >= shortest:
         state = orbit.state + share * correction
         moved = passage(orbit.problem, state, orbit.periods)
         candidate = replace(orbit, state=state, passage=moved)
