@@ -11,7 +11,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from gearmesh.dynamics.orbits import LARGEST_RESIDUAL, Orbit
+from gearmesh.dynamics.orbits import LARGEST_RESIDUAL, ROUNDED, Orbit
 from gearmesh.errors import NoOrbit
 from gearmesh.model.problem import Problem
 from gearmesh.solvers.reduced.period_map import advance, passage
@@ -20,7 +20,6 @@ Family = Callable[..., Problem]
 """The problem at the values of the parameters."""
 
 _MOST_CORRECTIONS = 12
-_ROUNDED = 1e-14  # residual that another correction does not improve
 _DIFFERENCE = 1e-5
 _SHORTEST_STEP = 1e-7
 _PLACES = 64
@@ -105,7 +104,7 @@ class Curve:
                 break
             best = float(np.abs(defect).max())
             found, found_orbit = place, orbit
-            if best < _ROUNDED:
+            if best < ROUNDED:
                 break
             gradients[:4, :4] = orbit.passage.jacobian - np.eye(4)
             try:
