@@ -20,6 +20,7 @@ if TYPE_CHECKING:
         follow,
         follow_special,
     )
+    from gearmesh.interface.geometry import Geometry, geometry
     from gearmesh.interface.orbits import Orbit, find_orbit
     from gearmesh.interface.runs import simulate, sweep
     from gearmesh.interface.spectra import campbell, spectrum
@@ -31,6 +32,7 @@ __version__ = "0.2.0"
 
 __all__ = [
     "Branch",
+    "Geometry",
     "InputError",
     "NoOrbit",
     "Orbit",
@@ -43,6 +45,7 @@ __all__ = [
     "find_orbit",
     "follow",
     "follow_special",
+    "geometry",
     "load",
     "lyapunov_spectrum",
     "paper",
@@ -58,6 +61,7 @@ _MODULES = {
         *("Branch", "SpecialCurve", "SpecialPoint"),
         *("follow", "follow_special"),
     ),
+    "gearmesh.interface.geometry": ("Geometry", "geometry"),
     "gearmesh.interface.orbits": ("Orbit", "find_orbit"),
     "gearmesh.interface.runs": ("simulate", "sweep"),
     "gearmesh.interface.spectra": ("campbell", "spectrum"),
