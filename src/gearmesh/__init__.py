@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from gearmesh.errors import InputError, NoOrbit
-    from gearmesh.interface.attractors import attractors, basins, lyapunov_spectrum
+    from gearmesh.interface.attractors import attractors, basins
     from gearmesh.interface.branches import (
         Branch,
         SpecialCurve,
@@ -21,6 +21,7 @@ if TYPE_CHECKING:
         follow_special,
     )
     from gearmesh.interface.geometry import Geometry, geometry
+    from gearmesh.interface.lyapunov import lyapunov_spectrum
     from gearmesh.interface.orbits import Orbit, find_orbit
     from gearmesh.interface.runs import simulate, sweep
     from gearmesh.interface.spectra import campbell, spectrum
@@ -56,12 +57,13 @@ __all__ = [
 
 _MODULES = {
     "gearmesh.errors": ("InputError", "NoOrbit"),
-    "gearmesh.interface.attractors": ("attractors", "basins", "lyapunov_spectrum"),
+    "gearmesh.interface.attractors": ("attractors", "basins"),
     "gearmesh.interface.branches": (
         *("Branch", "SpecialCurve", "SpecialPoint"),
         *("follow", "follow_special"),
     ),
     "gearmesh.interface.geometry": ("Geometry", "geometry"),
+    "gearmesh.interface.lyapunov": ("lyapunov_spectrum",),
     "gearmesh.interface.orbits": ("Orbit", "find_orbit"),
     "gearmesh.interface.runs": ("simulate", "sweep"),
     "gearmesh.interface.spectra": ("campbell", "spectrum"),

@@ -86,7 +86,7 @@ def integrate(
     extrema = np.empty((n, extrema_per_period * kept), EXTREMUM)
     sampled = n if samples_per_period else 0
     samples = np.empty((sampled, SAMPLED, kept * samples_per_period + WIDEST))
-    _sweep(runs, summaries, strobes, extrema, samples, samples_per_period)
+    sweep_all(runs, summaries, strobes, extrema, samples, samples_per_period)
     measured = [
         dict(zip(SUMMARY.names or (), values, strict=True)) for values in summaries.tolist()
     ]
@@ -120,7 +120,7 @@ def _runs(
 ) -> np.ndarray:
     """Return the runs in the form that the sweep takes, followed by their companions."""
     n = len(problems)
-    rows = [_run(problem, tolerance, samples_per_period) for problem in problems]
+    rows = [run_row(problem, tolerance, samples_per_period) for problem in problems]
     runs = np.array(rows + rows if estimate_errors else rows).view(RUN)[:, 0]
     companions = runs[n:]
     companions["log_tolerance"] = math.log2(tolerance * LOOSENING)
@@ -132,7 +132,7 @@ def _runs(
     return runs
 
 
-def _run(problem: Problem, tolerance: float, samples_per_period: int) -> list[float]:
+def run_row(problem: Problem, tolerance: float, samples_per_period: int) -> list[float]:
     """Return `problem` in the form that the compiled sweep takes, a row of `RUN`."""
     period, parts = problem.period, segments(problem)
     friction = problem.friction_coefficient * math.tan(problem.pressure_angle)
@@ -190,7 +190,7 @@ def _sample_ends(parts: tuple[Segment, ...], per_period: int) -> list[int]:
     return [math.ceil(part.end * per_period - _ON_EDGE) for part in parts]
 
 
-def _sweep(runs: np.ndarray, *arguments: object) -> None:
+def sweep_all(runs: np.ndarray, *arguments: object) -> None:
     """Call the compiled sweep until all runs are over."""
     progress = np.full(PROGRESS, -1, np.int64)
     compiled, width = (_scalar_sweep, 1) if len(runs) == 1 else (_vector_sweep, WIDEST)
