@@ -22,6 +22,7 @@ from gearmesh.identification import layout
 from gearmesh.identification.design import left_alone, stated
 from gearmesh.identification.settings import Settings, load_settings
 from gearmesh.pipeline import locks
+from gearmesh.pipeline.inputs import inputs
 from gearmesh.pipeline.messages import say
 from gearmesh.pipeline.stages import STAGES, job_name
 from gearmesh.reproduction.claims import Claim, load_ledger
@@ -243,6 +244,10 @@ _FACTS: dict[str, Callable[..., object]] = {
     "explorer": lambda plan: _statements(plan.study),
     "report": lambda plan: (_statements(plan.study), _verified(plan.places)),
     "study_report": lambda plan: _statements(plan.study),
+    "crate": lambda plan: (
+        _statements(plan.study),
+        [(str(path), provenance.digest([path])) for path in inputs(plan.study)],
+    ),
     "samples": lambda plan, design, index: (
         left_alone(plan.designs.designs[design], plan.study.pair),
         provenance.versions(),
