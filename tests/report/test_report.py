@@ -234,7 +234,7 @@ def test_what_a_study_states_itself_is_not_called_printed_or_assumed(small_run, 
     listed = text[start : text.index("<h3>", start)]
     assert re.findall(r"<code>(\w+)</code>", listed) == ["teeth", "module"]
     assert "Stated by this study" not in text[:start]
-    assert text.count("<td><code>teeth</code>") == text.count("<td><code>module</code>") == 1
+    assert text.count("<code>teeth</code>") == text.count("<code>module</code>") == 1
 
 
 def test_a_claim_whose_threshold_is_not_located_names_the_failed_run(small_run, small_study):

@@ -136,6 +136,11 @@ def _add_runs(commands: "argparse._SubParsersAction[_Parser]", pair: _Parser) ->
         choices=("up", "down"),
         help="start each run from the end of the run before it",
     )
+    sweep.add_argument(
+        "--loads",
+        action="store_true",
+        help="measure tooth forces, dynamic factors, transmission errors and bearing forces, too",
+    )
     sweep.set_defaults(run=_sweep)
 
 
@@ -182,7 +187,7 @@ def _add_orbits(commands: "argparse._SubParsersAction[_Parser]", pair: _Parser) 
 
 def _add_pictures(commands: "argparse._SubParsersAction[_Parser]") -> None:
     plot = commands.add_parser(
-        "plot", help="draw phase plane, time course and stroboscopic points of a run"
+        "plot", help="draw phase plane, time course, tooth force and spectrum of a run"
     )
     plot.add_argument("case", metavar="FILE.nc", type=Path, help="a run with its time course")
     plot.add_argument(

@@ -124,6 +124,11 @@ class Places:
         return self.folder / "checks" / "as_expected.txt"
 
     @property
+    def verification(self) -> Path:
+        """What `make verify` found, if it was run."""
+        return self.folder / "verification.json"
+
+    @property
     def again(self) -> Path:
         """Input of all jobs whose manifest does not hold; newer than everything, so they run."""
         return self.folder / ".again"

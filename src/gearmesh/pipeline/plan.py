@@ -245,7 +245,7 @@ _FACTS: dict[str, Callable[..., object]] = {
     "printed": lambda plan: (plan.pair, _of_figure(plan.ledger, "printed")),
     "ledger": lambda plan: plan.ledger,
     "explorer": lambda plan: _statements(plan.study),
-    "report": lambda plan: _statements(plan.study),
+    "report": lambda plan: (_statements(plan.study), _verified(plan.places)),
     "samples": lambda plan, design, index: (
         left_alone(plan.designs.designs[design], plan.study.pair),
         provenance.versions(),
@@ -263,6 +263,12 @@ def _grid(study: Study) -> list[tuple[str, Sequence[float]]]:
 
 def _of_figure(ledger: Iterable[Claim], figure: str) -> list[Claim]:
     return [claim for claim in ledger if claim.figure == figure]
+
+
+def _verified(places: Places) -> str | None:
+    """Return the hash of what `make verify` found; the report shows it."""
+    name = places.verification.name
+    return manifest.Hashes(places.folder).of([name])[name]
 
 
 def _statements(study: Study) -> tuple[object, ...]:

@@ -20,7 +20,7 @@ from gearmesh.data.paths import Places
 from gearmesh.data.writing import write_text
 from gearmesh.identification import layout, table
 from gearmesh.identification.settings import load_settings
-from gearmesh.report import description
+from gearmesh.report import description, verification
 from gearmesh.report.explorer import views
 from gearmesh.report.identified import section
 from gearmesh.report.presentation import environment
@@ -97,8 +97,10 @@ def write_report(study: Study, places: Places) -> None:
         for name in paths.FIGURE_NAMES
     }
     pictures = {name: embedded(places.figure_files(name)[1]) for name in captions}
-    entries = read_entries(places.ledger)
-    page = render(study, entries, resonance, captions, pictures, _identified(study))
+    page = render(
+        *(study, read_entries(places.ledger), resonance, captions, pictures),
+        *(_identified(study), verification.section(places)),
+    )
     write_text(places.report, page)
 
 
@@ -127,6 +129,7 @@ def render(
     captions: Mapping[str, str],
     pictures: Mapping[str, str],
     identified: str = "",
+    verified: str = "",
 ) -> str:
     """Return the page of the paper's study.
 
@@ -142,6 +145,8 @@ def render(
         Caption of each figure, and its picture as the address of an image.
     identified : str
         HTML of the findings about the open parameters.
+    verified : str
+        HTML of what `make verify` found.
     """
     figures = [_figure(name, captions[name], pictures[name], entries) for name in captions]
     template = environment().get_template("report.html.j2")
@@ -156,6 +161,7 @@ def render(
         stated=description.parameters(study),
         derived=description.derived(study),
         identified=identified,
+        verified=verified,
         computation=list(description.computation(study, resonance)),
         sensitivity=list(_sensitivity(resonance)),
     )

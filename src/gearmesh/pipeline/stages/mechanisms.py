@@ -10,22 +10,26 @@ from gearmesh.study.cases import Mechanisms, Study
 def orbits(study: Study, places: Places, letter: str) -> list[Path]:
     """Follow the orbits of the variants of one letter of Tab. 1, and locate their special points.
 
-    The special points are located a second time without friction and on rigid supports.
+    Those of the damped orbits of the mesh period are located a second time without friction and on
+    rigid supports.
     """
     import json
 
     from gearmesh.data.writing import write_text
     from gearmesh.reproduction.mechanisms import tables
-    from gearmesh.reproduction.mechanisms.orbits import WITHOUT_SUPPORTS, branches
+    from gearmesh.reproduction.mechanisms.orbits import WITHOUT_SUPPORTS, branches, doubled
 
     limits = float(study.nu[0]), float(study.nu[-1])
-    pairs = [(study.pair, {}), (study.pair.replace(**WITHOUT_SUPPORTS), WITHOUT_SUPPORTS)]
+    names = _mechanisms(study).by_letter[letter]
     made, rows = [], []
-    for pair, changed in pairs:
-        for name in _mechanisms(study).by_letter[letter]:
-            found = branches(pair, name, limits)
-            rows += tables.rows(name, found, changed)
-            made += [] if changed or not found else [tables.table(name, found)]
+    for name in names:
+        single = branches(study.pair, name, limits)
+        found = [*single, *doubled(single, limits)]
+        rows += tables.rows(name, found, {})
+        made += [tables.table(name, found)] if found else []
+    simpler = study.pair.replace(**WITHOUT_SUPPORTS)
+    for name in names if letter != "a" else []:
+        rows += tables.rows(name, branches(simpler, name, limits), WITHOUT_SUPPORTS)
     dataset, points = places.orbits(letter)
     tables.write(dataset, tables.joined(made), study, "branches of orbits")
     write_text(points, json.dumps(rows))

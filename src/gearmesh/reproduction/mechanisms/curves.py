@@ -20,6 +20,9 @@ FROM, TO = 0.4, 1.4
 TIMES = (0.02, 8.0)
 """Range of the damping and of the damping length, in multiples of the study's."""
 
+LONGEST_STEP = 0.06
+"""Longest step along a curve: twice that along a branch, which is fine enough to draw."""
+
 
 class Wanted(NamedTuple):
     """A curve: the special point that it goes through, and what changes along it."""
@@ -85,7 +88,7 @@ def _curve(pair: Pair, wanted: Wanted, row: Row, number: int) -> xr.Dataset:
     orbit = orbits.correct(problem, np.array(row["state"]), row["periods"])
     point = special_points.SpecialPoint(wanted.kind, row["nu"], {"nu": row["nu"]}, orbit)
     found = special_curves.follow_special(
-        point, ("nu", "times"), ((FROM, TO), TIMES), family, (row["nu"], 1.0)
+        point, ("nu", "times"), ((FROM, TO), TIMES), family, (row["nu"], 1.0), LONGEST_STEP
     )
     cusps = [(one.parameters["nu"], one.parameters["times"]) for one in found.cusps]
     return _columns(
