@@ -198,9 +198,14 @@ _COMMITTED: dict[str, Callable[[], list[Path]]] = {
     "fig1": lambda: [_STYLE],
     "identified_figures": lambda: [_STYLE, layout.IDENTIFIED, layout.SETTINGS],
     "study_figures": lambda: [_STYLE],
-    "notebook_pages": lambda: [_TEMPLATES / "notebook.html.j2", _TEMPLATES / "report.css"],
+    "notebook_pages": lambda: [
+        _TEMPLATES / name for name in ("notebook.html.j2", "base.html.j2", "report.css")
+    ],
     "explorer": lambda: [
-        *(_TEMPLATES / name for name in ("explorer.html.j2", "explorer.css", "report.css")),
+        *(
+            _TEMPLATES / name
+            for name in ("explorer.html.j2", "base.html.j2", "explorer.css", "report.css")
+        ),
         *sorted(_SCRIPTS.rglob("*.js")),
     ],
     "report": lambda: [
@@ -208,7 +213,6 @@ _COMMITTED: dict[str, Callable[[], list[Path]]] = {
         *(paths.CAPTIONS / f"{name}.rst" for name in paths.FIGURE_NAMES),
         *(layout.IDENTIFIED, layout.SETTINGS, paths.CLAIMS),
     ],
-    "study_report": _templates,
     "box": lambda: [paths.CLAIMS],
     "identified": lambda: [layout.SETTINGS, paths.CLAIMS],
     "identification_notebook": lambda: [
@@ -243,7 +247,6 @@ _FACTS: dict[str, Callable[..., object]] = {
     "ledger": lambda plan: plan.ledger,
     "explorer": lambda plan: _statements(plan.study),
     "report": lambda plan: (_statements(plan.study), _verified(plan.places)),
-    "study_report": lambda plan: _statements(plan.study),
     "crate": lambda plan: (
         _statements(plan.study),
         [(str(path), provenance.digest([path])) for path in inputs(plan.study)],

@@ -27,7 +27,6 @@ STAGES = {
             report.notebook_pages,
             report.explorer,
             report.report,
-            report.study_report,
             report.hashes,
         ),
         crate.crate,

@@ -33,14 +33,6 @@ def report(study: Study, places: Places) -> list[Path]:
     return [places.report]
 
 
-def study_report(study: Study, places: Places) -> list[Path]:
-    """Write the report page of a study of one's own."""
-    from gearmesh.report.study_page import write_report
-
-    write_report(study, places)
-    return [places.report]
-
-
 def hashes(study: Study, places: Places) -> list[Path]:
     """Put the hashes of all results into one file, for ``sha256sum -c``."""
     from gearmesh.data import manifest
