@@ -196,6 +196,7 @@ _COMMITTED: dict[str, Callable[[], list[Path]]] = {
     "fig1": lambda: [_STYLE],
     "identified_figures": lambda: [_STYLE, layout.IDENTIFIED, layout.SETTINGS],
     "study_figures": lambda: [_STYLE],
+    "why": lambda: [paths.notebook(paths.WHY), _STYLE],
     "notebook_pages": lambda: [_TEMPLATES / "notebook.html.j2", _TEMPLATES / "report.css"],
     "report": lambda: [
         *_templates(),
@@ -226,7 +227,10 @@ _FACTS: dict[str, Callable[..., object]] = {
     ),
     **{
         stage: lambda plan: (plan.study.title, plan.pair, plan.mechanisms)
-        for stage in ("branches", "basins", "sweeps", "lyapunov", "special_curves")
+        for stage in (
+            *("branches", "basins", "sweeps", "bands", "lyapunov", "special_curves"),
+            *("why",),
+        )
     },
     "figure": lambda plan, name: (
         *(plan.study.title, plan.pair, plan.study.time_courses),
