@@ -20,7 +20,7 @@ SNAKEMAKE := $(BIN)/python -I -m snakemake $(if $(CORES),--cores $(CORES))
 UV_COMPILE := uv pip compile --quiet --universal --python-version 3.11 --fork-strategy fewest \
 	--generate-hashes --no-annotate --no-header --no-emit-index-url
 
-.PHONY: help reproduce test test-fast bench lint docs identify lock clean always
+.PHONY: help reproduce test test-fast verify bench lint docs identify lock clean always
 .DELETE_ON_ERROR:
 
 help: ## show this list
@@ -35,6 +35,11 @@ test: $(STAMP) ## the whole test suite
 
 test-fast: $(STAMP) ## the tests to run after each edit, under a minute
 	$(BIN)/python -m pytest -n 2 --dist loadfile --no-loadscope-reorder -m "not slow"
+
+verify: $(STAMP) ## every case again by another solver, and the hashes of all numbers
+	@$(SNAKEMAKE)
+	$(BIN)/python -m verification
+	@$(SNAKEMAKE)
 
 bench: $(BENCH_STAMP) ## the benchmarks, peers side by side
 	$(BIN)/python -m benchmarks

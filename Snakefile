@@ -86,6 +86,7 @@ rule data:
 
 include: "workflow/rules/cases.smk"
 include: "workflow/rules/datasets.smk"
+include: "workflow/rules/explorer.smk"
 
 
 if PLAN.study.plan.mechanisms:

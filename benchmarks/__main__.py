@@ -1,20 +1,11 @@
 """`make bench`: measure all solvers in one go, print the table, write results and diagram."""
 
-import os
-
-# One core for everybody, and before NumPy and numba count the cores.
-os.environ.update(
-    dict.fromkeys(("NUMBA_NUM_THREADS", "OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS"), "1")
-)
-
-import importlib.metadata
 import json
-import platform
 import sys
 from dataclasses import asdict, dataclass
 from pathlib import Path
 
-from benchmarks import start, table, work_precision
+from benchmarks import machine, start, table, work_precision  # machine comes first
 from benchmarks.cases import SWEEP, singles, sweeps
 from benchmarks.measure import AIM, SHARE, Accuracy, Contest, measured, sparse
 from benchmarks.peers import OURS, OURS_WITH_LESS, PEERS, Solve, Solver
@@ -22,7 +13,6 @@ from benchmarks.peers import OURS, OURS_WITH_LESS, PEERS, Solve, Solver
 ROUNDS = 7
 SLOW_ROUNDS = 3
 RESULTS = Path(__file__).parent / "results.json"
-PACKAGES = ("gearmesh", "heyoka", "numba", "numbalsoda", "numpy", "scipy")
 
 
 @dataclass(frozen=True, slots=True)
@@ -38,8 +28,7 @@ class Entry:
 
 def main() -> int:
     """Run everything."""
-    if hasattr(os, "sched_setaffinity"):
-        os.sched_setaffinity(0, {max(os.sched_getaffinity(0))})
+    machine.keep_one_core()
     try:
         from benchmarks.reference import SENSITIVE, references
     except ImportError as error:
@@ -61,7 +50,7 @@ def main() -> int:
     rows = _rows(entries, runs, one_each)
     _say("start of the command")
     results = {
-        "machine": _machine(),
+        "machine": machine.described(),
         "aim": {"error": AIM, "share_of_runs": SHARE},
         "left_out": left_out,
         "sensitive": {"amplification_above": SENSITIVE, "nu": sensitive},
@@ -148,22 +137,6 @@ def _rows(entries: list[Entry], runs, one_each) -> list[dict]:
         }
         for entry in entries
     ]
-
-
-def _machine() -> dict[str, object]:
-    """Describe the machine and the versions, without naming either."""
-    model = platform.machine()
-    cpus = Path("/proc/cpuinfo")
-    if cpus.exists():
-        lines = [line for line in cpus.read_text().splitlines() if line.startswith("model name")]
-        model = lines[0].split(":")[1].strip() if lines else model
-    versions = {}
-    for package in PACKAGES:
-        try:
-            versions[package] = importlib.metadata.version(package)
-        except importlib.metadata.PackageNotFoundError:
-            continue
-    return {"processor": model, "python": platform.python_version(), "packages": versions}
 
 
 if __name__ == "__main__":

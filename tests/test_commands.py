@@ -225,7 +225,7 @@ def test_compare_lists_what_differs(gearmesh, two_runs, tmp_path):
         ((*SIMULATE, "-o", "x.csv"), "ends in .nc"),
         ((*SIMULATE, "-o", "x.nc", "--set", "backlash=40"), "unit missing"),
         ((*SIMULATE, "-o", "x.nc", "--set", "nu=0.7"), "nu: not a parameter"),
-        ((*SIMULATE, "-o", "x.nc", "--set", "damping_ratio=1"), "it is computed as"),
+        ((*SIMULATE, "-o", "x.nc", "--set", "static_force=1 N"), "it is computed as"),
         ((*SIMULATE, "-o", "x.nc", "--set", "assumed.backlash=4 um"), "did you mean 'backlash'?"),
         ((*SIMULATE, "-o", "x.nc", "--config", "none.yaml"), "none.yaml: cannot be read"),
         ((*SIMULATE, "-o", "x.nc", "--kept", "9"), "kept_revolutions"),

@@ -39,16 +39,17 @@ def solve(problems: Sequence[Problem], tolerance: float) -> list[Outcome]:
         batch = list(problems[first : first + LANES])
         n_runs = len(batch)
         batch += batch[-1:] * (LANES - n_runs)
-        outcomes += _integrator(terms(batch[0]), tolerance).solve(batch)[:n_runs]
+        outcomes += integrator(terms(batch[0]), tolerance).solve(batch)[:n_runs]
     return outcomes
 
 
 @lru_cache
-def _integrator(terms: Terms, tolerance: float) -> "_Integrator":
-    return _Integrator(terms, tolerance)
+def integrator(terms: Terms, tolerance: float) -> "Integrator":
+    """Return the integrator of a set of damping terms, compiled once."""
+    return Integrator(terms, tolerance)
 
 
-class _Integrator:
+class Integrator:
     """The two compiled integrators of a set of damping terms, and what their callbacks share."""
 
     def __init__(self, terms: Terms, tolerance: float):
@@ -83,10 +84,10 @@ class _Integrator:
         """Integrate one batch and collect its outputs."""
         total, first_kept = periods(problems[0])
         cut = pieces_of(problems[0])
-        self._prepare(problems, cut)
+        self.prepare(problems, cut, [initial_state(p) for p in problems])
         strobes = [self.state[:2].copy()]
         for n in range(first_kept):
-            self._propagate_period(n, cut, self.active.propagate_until)
+            self.propagate_period(n, cut, self.active.propagate_until)
             strobes.append(self.state[:2].copy())
 
         self.keep = True
@@ -97,11 +98,12 @@ class _Integrator:
             self.active.propagate_until(time, write_tc=True, callback=self._store_step)
 
         for n in range(first_kept, total):
-            self._propagate_period(n, cut, propagate_storing)
+            self.propagate_period(n, cut, propagate_storing)
             strobes.append(self.state[:2].copy())
         return self._outcomes(np.array(strobes), first_kept, total)
 
-    def _prepare(self, problems, cut: tuple[Piece, ...]):
+    def prepare(self, problems, cut: tuple[Piece, ...], states):
+        """Set the lanes to `states`, each (y, w, Y, dY/dt) with time in mesh periods."""
         if any([(q.start, q.end) for q in pieces_of(p)] != [(q.start, q.end) for q in cut]
                for p in problems):  # fmt: skip
             raise ValueError("the runs of a batch must switch at the same phases")
@@ -114,16 +116,20 @@ class _Integrator:
         self._use(self.early)
         self.early.set_time(0.0)
         self.early.reset_cooldowns()
-        self.state[:] = np.array([initial_state(p) for p in problems]).T
+        self.state[:] = np.transpose(states)
         for place in runs[0].fixed:
             self.pars[place] = [run.fixed[place] for run in runs]
 
         self.keep = False
         self.extrema = []
         self.steps = []
-        self.regime = [1] * LANES
+        self.regime = [
+            1 if y >= 0 else (-1 if y <= -back else 0)
+            for y, back in zip(self.state[0], self.backlash, strict=True)
+        ]
         # At rest, y turns towards its acceleration: C differs from C_s, under which it rests.
-        self.sign = [1.0 if cut[0].stiffness < 1 else -1.0] * LANES
+        rest = 1.0 if cut[0].stiffness < 1 else -1.0
+        self.sign = [float(np.sign(w)) or rest for w in self.state[1]]
         self.stiffness = self.piece_stiffness[0].tolist()
         for lane in range(LANES):
             self._enter_regime(lane)
@@ -139,7 +145,8 @@ class _Integrator:
         self.late.reset_cooldowns()
         self._use(self.late)
 
-    def _propagate_period(self, n, cut, propagate):
+    def propagate_period(self, n, cut, propagate):
+        """Move all lanes over the mesh period `n`, with a function that moves to a time."""
         for piece, stiffness, share in zip(
             cut, self.piece_stiffness, self.piece_share, strict=True
         ):

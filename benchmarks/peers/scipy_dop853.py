@@ -27,7 +27,7 @@ SHORTEST = 1e-9
 
 def solve(problems: Sequence[Problem], tolerance: float) -> list[Outcome]:
     """Solve the runs one after the other."""
-    return [_Run(problem, tolerance).outcome() for problem in problems]
+    return [Run(problem, tolerance).outcome() for problem in problems]
 
 
 @njit
@@ -50,7 +50,7 @@ def _boundary(level: float, direction: int):
     return distance
 
 
-class _Run:
+class Run:
     """One run under way."""
 
     def __init__(self, problem: Problem, tolerance: float):
@@ -80,14 +80,15 @@ class _Run:
         for n in range(total):
             for piece in piece_table(pieces_of(self.problem)):
                 start, end = (n + piece[0]) * length, (n + piece[1]) * length
-                self._integrate_piece(piece, start, end, times if n >= first_kept else None)
+                self.integrate_piece(piece, start, end, times if n >= first_kept else None)
             strobes.append(self.state[:2])
         strobes = np.array(strobes)
         return Outcome(
             np.array(self.extrema), strobes[:, 0], strobes[:, 1], self.samples[0], self.samples[1]
         )
 
-    def _integrate_piece(self, piece, time, end, sample_times):
+    def integrate_piece(self, piece, time, end, sample_times):
+        """Move from `time` to the `end` of a piece of the mesh period, over all contact events."""
         while time < end:
             set_regime(self.constants, self.regime, piece, *self.dampings, self.problem.backlash)
             solution = self._solve(time, end, sample_times is not None)

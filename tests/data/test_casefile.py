@@ -121,7 +121,8 @@ def test_a_failed_case_is_written_with_its_reason(tmp_path, parameters):
     case = xr.open_dataset(path)
     meanings = case["status"].attrs["flag_meanings"].split()
     assert meanings[int(case["status"])] == "step_limit"
-    assert case.sizes["extremum"] == 0
+    assert case["extremum_kind"].values.tolist() == [casefile.NO_EXTREMUM]
+    assert np.isnan(case["extremum_y"]).all()
     assert case.sizes["boundary"] == 106
     assert np.isnan(case["y_max"])
 

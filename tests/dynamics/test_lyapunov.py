@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from problems import problem
 
-from gearmesh.dynamics.lyapunov import lyapunov_spectrum
+from gearmesh.dynamics.attraction.lyapunov import lyapunov_spectrum
 from gearmesh.dynamics.orbits import find_orbit
 from gearmesh.errors import NoOrbit
 from gearmesh.solvers.reduced.period_map import passage

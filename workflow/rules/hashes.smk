@@ -5,6 +5,7 @@ rule hashes:
             PLACES.resonance,
             PLACES.bifurcation,
             PLACES.report,
+            PLACES.explorer,
             expand(PLACES.batch("{letter}"), letter=LETTERS),
             [PLACES.branches, PLACES.special_points] if PLAN.study.plan.mechanisms else [],
         ],

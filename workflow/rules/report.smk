@@ -41,6 +41,7 @@ rule report:
             rules.identified_figures.output,
             rules.notebook_pages.output,
         ],
+        beside=rules.explorer.output,
         again=PLAN.again("report"),
     output:
         report(PLACES.report, caption="../report/page.rst", category="Report"),

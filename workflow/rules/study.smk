@@ -26,6 +26,7 @@ rule figures:
 rule report:
     input:
         read=[PLACES.resonance, rules.figures.input],
+        beside=rules.explorer.output,
         again=PLAN.again("study_report"),
     output:
         PLACES.report,

@@ -119,7 +119,7 @@ def _add_runs(commands: "argparse._SubParsersAction[_Parser]", pair: _Parser) ->
         "simulate", parents=[pair, run], help="integrate one run and write its time course"
     )
     simulate.add_argument("--variant", required=True, help="see 'gearmesh variants'")
-    simulate.add_argument("--nu", required=True, help="mesh frequency nu_s")
+    simulate.add_argument("--nu", required=True, help="mesh frequency nu_s, or '3000 rpm'")
     simulate.set_defaults(run=_simulate)
 
     sweep = commands.add_parser(
@@ -129,12 +129,17 @@ def _add_runs(commands: "argparse._SubParsersAction[_Parser]", pair: _Parser) ->
         "--variant", required=True, nargs="+", help="one or several, see 'gearmesh variants'"
     )
     sweep.add_argument(
-        "--nu", required=True, metavar="START:STOP:STEP", help="mesh frequencies nu_s"
+        "--nu", required=True, metavar="START:STOP:STEP", help="mesh frequencies nu_s, or speeds"
     )
     sweep.add_argument(
         "--direction",
         choices=("up", "down"),
         help="start each run from the end of the run before it",
+    )
+    sweep.add_argument(
+        "--loads",
+        action="store_true",
+        help="measure tooth forces, dynamic factors, transmission errors and bearing forces, too",
     )
     sweep.set_defaults(run=_sweep)
 
@@ -153,7 +158,7 @@ def _start_option() -> _Parser:
 def _add_orbits(commands: "argparse._SubParsersAction[_Parser]", pair: _Parser) -> None:
     near = _Parser(add_help=False, parents=[_start_option()])
     near.add_argument("--variant", required=True, help="see 'gearmesh variants'")
-    near.add_argument("--nu", required=True, help="mesh frequency nu_s")
+    near.add_argument("--nu", required=True, help="mesh frequency nu_s, or '3000 rpm'")
     near.add_argument(
         "--periods", metavar="N", default="1", help="least period in mesh periods (default: 1)"
     )
@@ -182,7 +187,7 @@ def _add_orbits(commands: "argparse._SubParsersAction[_Parser]", pair: _Parser) 
 
 def _add_pictures(commands: "argparse._SubParsersAction[_Parser]") -> None:
     plot = commands.add_parser(
-        "plot", help="draw phase plane, time course and stroboscopic points of a run"
+        "plot", help="draw phase plane, time course, tooth force and spectrum of a run"
     )
     plot.add_argument("case", metavar="FILE.nc", type=Path, help="a run with its time course")
     plot.add_argument(

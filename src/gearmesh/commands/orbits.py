@@ -67,10 +67,11 @@ def branch(options: argparse.Namespace) -> int:
 def _find(options: argparse.Namespace) -> Orbit:
     if not options.periods.isdecimal():
         raise InputError(f"--periods: found '{options.periods}'; allowed is a whole number")
+    pair = load_pair(options)
     return find_orbit(
-        load_pair(options),
+        pair,
         variant(options.variant),
-        read_frequency(options.nu),
+        read_frequency(options.nu, pair),
         periods=int(options.periods),
         start=read_start(options.start),
     )

@@ -10,8 +10,9 @@ from gearmesh.commands.tables import load_pair
 from gearmesh.data.writing import replacing
 from gearmesh.errors import InputError
 from gearmesh.model.variants import variant
-from gearmesh.study.frequencies import MAX_CASES, read_nu
+from gearmesh.study.frequencies import MAX_CASES
 from gearmesh.study.pair import Pair
+from gearmesh.study.speeds import as_nu, read_nu_or_speed
 
 NOT_INTEGRATED = 1
 _NETCDF = (b"CDF", b"\x89HDF")
@@ -20,8 +21,8 @@ _NETCDF = (b"CDF", b"\x89HDF")
 def simulate(options: argparse.Namespace) -> int:
     """Integrate one run and write it with its time course."""
     chosen = variant(options.variant)
-    nu = read_frequency(options.nu)
     pair = _pair(options)
+    nu = read_frequency(options.nu, pair)
     replaces = check_output(options.output)
 
     from gearmesh.data import casefile
@@ -29,10 +30,10 @@ def simulate(options: argparse.Namespace) -> int:
     from gearmesh.study.cases import Case
 
     case = Case(chosen, nu, time_course=True)
-    [response] = integrate([pair.problem(chosen, nu)], pair.tolerance, pair.samples_per_period)
-    casefile.write_case(
-        options.output, casefile.attributes(pair, case), casefile.record(response, pair)
-    )
+    problem = pair.problem(chosen, nu)
+    [response] = integrate([problem], pair.tolerance, pair.samples_per_period)
+    columns = casefile.record(response, pair, problem)
+    casefile.write_case(options.output, casefile.attributes(pair, case), columns)
     if response.status != "ok":
         print(f"gearmesh: {options.output}: not integrated: {response.status}")
         return NOT_INTEGRATED
@@ -40,6 +41,14 @@ def simulate(options: argparse.Namespace) -> int:
     print(
         f"{options.output}{replaces}: {chosen.name} at nu_s = {nu:g}, "
         f"y from {response.y_min * y_st:.6g} to {response.y_max * y_st:.6g} mm"
+    )
+    low, high, factor, error = (
+        float(columns[name])
+        for name in ("force_min", "force_max", "dynamic_factor", "transmission_error_range")
+    )
+    print(
+        f"tooth force from {low:.6g} to {high:.6g} N, K_v = {factor:.4g}, "
+        f"transmission error {error:.4g} mm peak to peak"
     )
     if response.sensitive:
         error = max(response.y_max_error, response.y_min_error) * y_st
@@ -53,13 +62,13 @@ def simulate(options: argparse.Namespace) -> int:
 def sweep(options: argparse.Namespace) -> int:
     """Integrate variants over mesh frequencies and write one dataset."""
     chosen = [variant(name) for name in options.variant]
-    nus = _frequencies(options.nu)
     pair = _pair(options)
+    nus = _frequencies(options.nu, pair)
     replaces = check_output(options.output)
 
     from gearmesh.interface.runs import sweep as integrate
 
-    found = integrate(pair, chosen, nus, direction=options.direction)
+    found = integrate(pair, chosen, nus, direction=options.direction, loads=options.loads)
     with replacing(options.output) as temporary:
         found.to_netcdf(temporary, engine="netcdf4")
     failed = int((found["status"] != 0).sum())
@@ -106,24 +115,24 @@ def _number_or_text(text: str) -> float | str:
         return text
 
 
-def read_frequency(text: str) -> float:
-    """Read a mesh frequency from the command line."""
+def read_frequency(text: str, pair: Pair) -> float:
+    """Read a mesh frequency, or a speed, from the command line."""
     try:
-        return read_nu(text)
+        return read_nu_or_speed(text, pair)
     except ValueError as error:
         raise InputError(f"--nu: found '{text}': {error}") from None
 
 
-def _frequencies(text: str) -> list[float]:
+def _frequencies(text: str, pair: Pair) -> list[float]:
     """Read ``START:STOP:STEP``, or one frequency."""
     parts = text.split(":")
     if len(parts) == 1:
-        return [read_frequency(text)]
+        return [read_frequency(text, pair)]
     if len(parts) != 3:
         raise InputError(f"--nu: found '{text}'; allowed is START:STOP:STEP, or one number")
-    low, high = (Decimal(repr(read_frequency(part))) for part in parts[:2])
+    low, high = (Decimal(repr(read_frequency(part, pair))) for part in parts[:2])
     try:
-        step = Decimal(parts[2])
+        step = Decimal(str(as_nu(parts[2], pair)))
     except InvalidOperation:
         raise InputError(f"--nu: found step '{parts[2]}'; allowed is a positive number") from None
     if not step > 0 or not step.is_finite() or high < low:

@@ -4,7 +4,7 @@ import argparse
 import textwrap
 from collections.abc import Sequence
 
-from gearmesh.study.derived import DERIVED
+from gearmesh.study.derived import derived
 from gearmesh.study.pair import Pair
 
 WIDTH = 100
@@ -55,7 +55,7 @@ def parameters(options: argparse.Namespace) -> int:
     for row in pair.parameters:
         told = f"{row.description}; {row.reason}" if row.reason else row.description
         table.append((row.name, row.symbol, _text(row.value), row.unit, row.kind, told))
-    for quantity in DERIVED:
+    for quantity in derived(pair):
         value = _text(quantity.value(pair))
         table.append(
             (quantity.name, quantity.symbol, value, quantity.unit, "computed", quantity.formula)

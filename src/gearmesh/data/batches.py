@@ -5,19 +5,15 @@ datasets are made of these few files. The thousands of case files are for reader
 many cases leaves them out (``case_files: false``), and its datasets are the same.
 """
 
-import contextlib
 import itertools
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
-import netCDF4
 import numpy as np
 
-from gearmesh.data import casefile
+from gearmesh.data import casefile, classic
 from gearmesh.data.casefile import FIELDS, Field, Record
-from gearmesh.errors import InputError
 from gearmesh.study.cases import Case
 from gearmesh.study.pair import Pair
 
@@ -90,34 +86,26 @@ def write_batch(path: Path, pair: Pair, cases: Sequence[Case], records: Sequence
     """
     names = list(dict.fromkeys(case.variant.name for case in cases))
     index = Field("variant", "", "1", "damping variant", "i2", dict(enumerate(names)))
-    with casefile.created(path) as file:
-        file.setncatts(
-            {
-                "Conventions": "CF-1.11",
-                "title": f"gear mesh, {len(cases)} cases",
-                **casefile.common_attributes(pair),
-            }
-        )
-        file.createDimension("case", len(records))
-        values: dict[str, Any] = {
-            "variant": [names.index(case.variant.name) for case in cases],
-            "nu": [case.nu for case in cases],
-            "extremum_count": [record["extremum_kind"].size for record in records],
-        }
-        casefile.define(file, index, "variant", ("case",))
-        casefile.define(file, Field("nu", "", "1", "mesh frequency nu_s"), "nu", ("case",))
-        count = Field("extremum_count", "", "1", "number of extrema of a case", "i4")
-        rows = casefile.define(file, count, "extremum_count", ("case",))
-        rows.sample_dimension = "extremum"
-        for field, name in STORED:
-            values[name] = _joined(field, [record[name] for record in records])
-            dimensions = _dimensions(field)
-            for dimension, size in zip(dimensions, values[name].shape, strict=True):
-                if dimension not in file.dimensions:
-                    file.createDimension(dimension, size)
-            casefile.define(file, field, name, dimensions)
-        for name, array in values.items():
-            file[name][...] = array
+    frequency = Field("nu", "", "1", "mesh frequency nu_s")
+    count = Field("extremum_count", "", "1", "number of extrema of a case", "i4")
+    of_cases = (
+        (index, [names.index(case.variant.name) for case in cases]),
+        (frequency, [case.nu for case in cases]),
+        (count, [record["extremum_kind"].size for record in records]),
+    )
+    variables = {
+        field.name: casefile.variable(field, field.name, np.array(values), ("case",))
+        for field, values in of_cases
+    }
+    for field, name in STORED:
+        joined = _joined(field, [record[name] for record in records])
+        variables[name] = casefile.variable(field, name, joined, _dimensions(field))
+    attributes = {
+        "Conventions": "CF-1.11",
+        "title": f"gear mesh, {len(cases)} cases",
+        **casefile.common_attributes(pair),
+    }
+    classic.write(path, attributes, variables)
 
 
 def _dimensions(field: Field) -> tuple[str, ...]:
@@ -136,27 +124,18 @@ def read_batch(path: Path) -> Content:
     InputError
         If it is missing or damaged.
     """
-    with _opened(path) as file:
-        names = file["variant"].flag_meanings.split()
+    with classic.opened(path) as file:
+        stored = {name: classic.values(found) for name, found in file.variables.items()}
+        names = file.variables["variant"].flag_meanings.decode().split()
         return Content(
-            variants=[names[i] for i in file["variant"][:]],
-            nu=file["nu"][:],
-            counts=file["extremum_count"][:],
-            columns={name: file[name][:] for _, name in STORED},
+            variants=[names[i] for i in stored["variant"]],
+            nu=stored["nu"],
+            counts=stored["extremum_count"],
+            columns={name: stored[name] for _, name in STORED},
         )
 
 
 def read_counts(path: Path) -> np.ndarray:
     """Read only the number of extrema of each case of a batch file."""
-    with _opened(path) as file:
-        return file["extremum_count"][:]
-
-
-@contextlib.contextmanager
-def _opened(path: Path) -> Iterator[netCDF4.Dataset]:
-    try:
-        with netCDF4.Dataset(path) as file:
-            file.set_auto_mask(False)
-            yield file
-    except (OSError, IndexError, RuntimeError):
-        raise InputError(f"{path}: missing or damaged; delete it and run again") from None
+    with classic.opened(path) as file:
+        return classic.values(file.variables["extremum_count"])

@@ -1,4 +1,4 @@
-"""One case in one NetCDF-4 file: how it is laid out, written and read.
+"""One case in one NetCDF file: how it is laid out, written and read.
 
 `FIELDS` is the layout. A `Record` holds a case as its file does: variable name -> array, so what
 is read from a file is written again with the same bytes. A file states in its attributes how it
@@ -6,25 +6,27 @@ was made (`attributes`). Manifests show whether it is still as it was written
 (`gearmesh.data.manifest`).
 """
 
-import contextlib
 import functools
 import hashlib
+import itertools
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-import netCDF4
 import numpy as np
 
-from gearmesh.data import provenance, writing
-from gearmesh.errors import InputError
+from gearmesh.data import classic, provenance
+from gearmesh.data.classic import Variable
+from gearmesh.model.problem import Problem
+from gearmesh.solvers.loads import loads
 from gearmesh.solvers.response import STATUSES, Response
 from gearmesh.study.cases import Case
 from gearmesh.study.pair import Pair
 
 REGIMES = {1: "normal_mesh", 0: "contact_loss", -1: "inverse_mesh"}
-EXTREMUM_KINDS = {1: "maximum", -1: "minimum"}
+NO_EXTREMUM = 0
+EXTREMUM_KINDS = {1: "maximum", -1: "minimum", NO_EXTREMUM: "none"}
 
 Record = dict[str, np.ndarray]
 """A case as its file holds it: variable name -> array."""
@@ -107,8 +109,32 @@ SAMPLE_FIELDS = (
 )
 """The variables of a time course."""
 
+LOAD_FIELDS = (
+    Field("transmission_error_rms", "", "mm", "rms of the dynamic transmission error about its "
+          "mean"),
+    Field("transmission_error_range", "", "mm", "dynamic transmission error, peak to peak"),
+    Field("force_max", "", "N", "greatest tooth force"),
+    Field("force_min", "", "N", "least tooth force; negative: on rear flanks, or pulling"),
+    Field("dynamic_factor", "", "1", "dynamic factor K_v, greatest tooth force over static force"),
+    Field("force_bearing_3_max", "", "N", "greatest force on the bearing of wheel 3 along y"),
+    Field("force_bearing_2_max", "", "N", "greatest force on the bearing of wheel 2 along y"),
+)  # fmt: skip
+"""What engineers report of a run; in a record where it is asked for."""
 
-def record(response: Response, pair: Pair) -> Record:
+LOAD_SAMPLE_FIELDS = (
+    Field("force_normal", "sample", "N", "tooth force: elastic and damping force"),
+    Field("force_bearing_3", "sample", "N", "force on the bearing of wheel 3 along y"),
+    Field("force_bearing_2", "sample", "N", "force on the bearing of wheel 2 along y"),
+    Field("transmission_error", "sample", "mm",
+          "dynamic transmission error R_b3 phi_3 + R_b2 phi_2"),
+)  # fmt: skip
+"""The same over time."""
+
+ALL_FIELDS = (*FIELDS, *LOAD_FIELDS, *SAMPLE_FIELDS, *LOAD_SAMPLE_FIELDS)
+"""All variables, in the order of a file."""
+
+
+def record(response: Response, pair: Pair, problem: Problem | None = None) -> Record:
     """Convert a response into the units of a file.
 
     Parameters
@@ -117,6 +143,8 @@ def record(response: Response, pair: Pair) -> Record:
         Dimensionless, with or without samples.
     pair : Pair
         They set the scales of length, time and force.
+    problem : Problem, optional
+        The run, if the record is to hold its loads; its response must have samples.
     """
     scales = {
         "mm": pair.static_deflection,
@@ -125,14 +153,24 @@ def record(response: Response, pair: Pair) -> Record:
         "N": pair.static_force,
     }
     columns: Record = {}
-    for field, value in _values(response):
+    values = itertools.chain(_values(response), _loads(response, problem) if problem else ())
+    for field, value in values:
         array = np.asarray(field.fill if value is None else value, field.kind)
-        if field.dimension == "boundary" and array.size == 0:
-            array = np.full(boundaries(pair), np.nan)  # of a run that failed
+        if field.dimension and array.size == 0:  # of a run that failed
+            # The format has no dimension of length 0, so a value that is absent stands for none.
+            size = boundaries(pair) if field.dimension == "boundary" else 1
+            array = np.full(size, absent(field), field.kind)
         if field.relative:
             columns[field.relative] = array
         columns[field.name] = array * scales[field.unit] if field.unit in scales else array
     return columns
+
+
+def absent(field: Field) -> float:
+    """Return the value of a field where there is none."""
+    if field.kind == "f8":
+        return np.nan
+    return NO_EXTREMUM if field.name == "extremum_kind" else MISSING
 
 
 def boundaries(pair: Pair) -> int:
@@ -155,6 +193,18 @@ def _values(response: Response) -> Iterator[tuple[Field, object]]:
             yield field, getattr(response.samples, field.name)
 
 
+def _loads(response: Response, problem: Problem) -> Iterator[tuple[Field, object]]:
+    if response.samples is None:  # the run failed
+        yield from ((field, np.nan) for field in LOAD_FIELDS)
+        return
+    found = loads(problem, response.samples)
+    for field in LOAD_FIELDS:
+        of_force = field.name == "dynamic_factor"
+        yield field, found.force_max if of_force else getattr(found, field.name)
+    for field in LOAD_SAMPLE_FIELDS:
+        yield field, getattr(response.samples, field.name)
+
+
 @functools.lru_cache(maxsize=2**13)
 def case_digest(pair: Pair, case: Case) -> str:
     """Return the SHA-256 of all that decides the numbers of a case.
@@ -175,7 +225,7 @@ def case_digest(pair: Pair, case: Case) -> str:
 
 @functools.cache
 def _common_digest() -> str:
-    layout = provenance.digest([Path(__file__)])
+    layout = provenance.digest([Path(__file__), Path(classic.__file__)])
     return f"{layout} {provenance.physics_digest()} {provenance.versions()}"
 
 
@@ -219,34 +269,25 @@ def write_case(path: Path | str, attributes: Mapping[str, str | float], columns:
     columns : Record
         See `record`.
     """
-    path = Path(path)
-    with created(path) as file:
-        file.setncatts(attributes)
-        fields = [field for field in (*FIELDS, *SAMPLE_FIELDS) if field.name in columns]
-        for field in fields:
-            if field.dimension and field.dimension not in file.dimensions:
-                file.createDimension(field.dimension, columns[field.name].size)
-        # All definitions before all values: the library would flush at every change between them.
-        variables = [
-            define(file, field, name, (field.dimension,) if field.dimension else ())
-            for field in fields
-            for name in (field.name, field.relative)
-            if name
-        ]
-        for variable in variables:
-            variable[...] = columns[variable.name]
+    variables = {
+        name: variable(field, name, columns[name], (field.dimension,) if field.dimension else ())
+        for field in ALL_FIELDS
+        if field.name in columns
+        for name in (field.name, field.relative)
+        if name
+    }
+    classic.write(Path(path), attributes, variables)
 
 
-def define(
-    file: netCDF4.Dataset,
-    field: Field,
-    name: str,
-    dimensions: tuple[str, ...],
-    **storage: Any,
-) -> "netCDF4.Variable[Any]":
-    """Create the variable of a field, or of its twin, with its attributes."""
-    variable = file.createVariable(name, field.kind, dimensions, fill_value=field.fill, **storage)
-    relative = name != field.name
+def variable(field: Field, name: str, values: np.ndarray, dimensions: tuple[str, ...]) -> Variable:
+    """Return the variable of a field, or of its twin, for a file."""
+    fill = {} if field.fill is None else {"_FillValue": np.asarray(field.fill, field.kind)}
+    stated = fill | variable_attributes(field, relative=name != field.name)
+    return Variable(np.asarray(values, field.kind), dimensions, stated)
+
+
+def variable_attributes(field: Field, relative: bool = False) -> dict[str, Any]:
+    """Return the CF attributes of a field, or of its twin in static deflections."""
     stated: dict[str, Any] = {
         "units": "1" if relative else field.unit,
         "long_name": field.long_name + (", in static deflections y_st" if relative else ""),
@@ -254,32 +295,7 @@ def define(
     if field.flags:
         stated["flag_values"] = np.array(list(field.flags), field.kind)
         stated["flag_meanings"] = " ".join(field.flags.values())
-    variable.setncatts(stated)
-    variable.set_auto_maskandscale(False)
-    return variable
-
-
-@contextlib.contextmanager
-def created(path: Path) -> Iterator[netCDF4.Dataset]:
-    """Open a NetCDF-4 file that comes into being whole when the context ends.
-
-    Parameters
-    ----------
-    path : Path
-        The file; its folder is made if it is missing.
-
-    Raises
-    ------
-    InputError
-        If it cannot be written; the message is one line with the reason.
-    """
-    with (
-        writing.replacing(path) as temporary,
-        netCDF4.Dataset(temporary, "w", format="NETCDF4") as file,
-    ):
-        # All values are written, so filling them first would only cost a second pass.
-        file.set_fill_off()
-        yield file
+    return stated
 
 
 def read_case(path: Path | str) -> tuple[dict[str, str | float], Record]:
@@ -293,12 +309,8 @@ def read_case(path: Path | str) -> tuple[dict[str, str | float], Record]:
     Raises
     ------
     InputError
-        If there is no such file, or it is not NetCDF.
+        If there is no such file, or it is damaged.
     """
-    try:
-        with netCDF4.Dataset(path) as file:
-            file.set_auto_mask(False)
-            columns = {name: np.asarray(variable[...]) for name, variable in file.variables.items()}
-            return file.__dict__, columns
-    except (OSError, RuntimeError):
-        raise InputError(f"{path}: missing or damaged; allowed is a case file") from None
+    with classic.opened(path) as file:
+        columns = {name: classic.values(found) for name, found in file.variables.items()}
+        return classic.attributes(file), columns

@@ -11,19 +11,20 @@ import contextlib
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import netCDF4
 import numpy as np
 import xarray as xr
 
-from gearmesh.data import batches, casefile
+from gearmesh.data import batches, casefile, writing
 from gearmesh.data.batches import Content
 from gearmesh.data.casefile import FIELDS, MISSING, Field
 from gearmesh.errors import InputError
 from gearmesh.model.variants import Variant
 from gearmesh.study.cases import Study
 
-_FLAGS_OF_NO_CASE = {"status": {MISSING: "not_computed"}, "extremum_kind": {0: "none"}}
+_FLAGS_OF_NO_CASE = {"status": {MISSING: "not_computed"}}
 NAMES = "variant_name"
 """The variable with the names of the variants."""
 
@@ -102,7 +103,7 @@ def write_datasets(
 def _created(
     path: Path, study: Study, title: str, sizes: Mapping[str, int]
 ) -> Iterator[netCDF4.Dataset]:
-    with casefile.created(path) as file:
+    with writing.replacing(path) as temporary, netCDF4.Dataset(temporary, "w") as file:
         # A chunk may reach beyond the last frequency; the values there must be defined, too.
         file.set_fill_on()
         file.setncatts(
@@ -121,16 +122,26 @@ def _created(
 def _write_coordinates(file: netCDF4.Dataset, variants: Sequence[Variant], nu: np.ndarray) -> None:
     numbers = {row: variant.name for row, variant in enumerate(variants)}
     index = Field("variant", "", "1", "number of the damping variant", "i4", numbers)
-    casefile.define(file, index, index.name, ("variant",))[:] = list(numbers)
+    _create(file, index, index.name, ("variant",))[:] = list(numbers)
     for attribute, name, long_name in _LABELS:
         labels = file.createVariable(name, str, ("variant",))
         labels.setncatts({"long_name": long_name})
         labels[:] = np.array([getattr(variant, attribute) for variant in variants], object)
     factor = Field("damping_factor", "", "1", "multiple of the printed damping")
-    factors = casefile.define(file, factor, factor.name, ("variant",))
+    factors = _create(file, factor, factor.name, ("variant",))
     factors[:] = [variant.factor for variant in variants]
     frequency = Field("nu", "", "1", "mesh frequency nu_s, in units of Omega_s")
-    casefile.define(file, frequency, frequency.name, ("nu",))[:] = nu
+    _create(file, frequency, frequency.name, ("nu",))[:] = nu
+
+
+def _create(
+    file: netCDF4.Dataset, field: Field, name: str, dimensions: tuple[str, ...], **storage: Any
+) -> "netCDF4.Variable[Any]":
+    """Create the variable of a field, or of its twin, with its attributes."""
+    variable = file.createVariable(name, field.kind, dimensions, fill_value=field.fill, **storage)
+    variable.setncatts(casefile.variable_attributes(field, relative=name != field.name))
+    variable.set_auto_maskandscale(False)
+    return variable
 
 
 def _define(file: netCDF4.Dataset, field: Field) -> None:
@@ -141,7 +152,7 @@ def _define(file: netCDF4.Dataset, field: Field) -> None:
     flags = {**(field.flags or {}), **_FLAGS_OF_NO_CASE.get(field.name, {})}
     field = replace(field, flags=flags, fill=np.nan if field.kind == "f8" else field.fill)
     for name in filter(None, (field.name, field.relative)):
-        variable = casefile.define(file, field, name, dimensions, chunksizes=chunk, **_COMPRESSED)
+        variable = _create(file, field, name, dimensions, chunksizes=chunk, **_COMPRESSED)
         variable.coordinates = _COORDINATES
         # Every chunk is written once, as a whole. A cache would keep megabytes for each variable.
         variable.set_var_chunk_cache(size=1)
@@ -179,16 +190,10 @@ def _cells(field: Field, content: Content, nu: np.ndarray, longest: int) -> np.n
     """Spread the values of a variant over all frequencies."""
     stored = content.columns[field.relative or field.name]
     if field.dimension == "extremum":
-        rectangle = np.full((content.nu.size, max(longest, 1)), _absent(field), field.kind)
+        rectangle = np.full((content.nu.size, max(longest, 1)), casefile.absent(field), field.kind)
         rectangle[np.arange(rectangle.shape[1]) < content.counts[:, None]] = stored
         stored = rectangle
-    cells = np.full((nu.size, *stored.shape[1:]), _absent(field), field.kind)
+    cells = np.full((nu.size, *stored.shape[1:]), casefile.absent(field), field.kind)
     on_grid = np.isin(content.nu, nu)
     cells[np.searchsorted(nu, content.nu[on_grid])] = stored[on_grid]
     return cells
-
-
-def _absent(field: Field) -> float:
-    if field.kind == "f8":
-        return np.nan
-    return 0 if field.name == "extremum_kind" else MISSING

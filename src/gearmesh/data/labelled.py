@@ -8,7 +8,16 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from gearmesh.data.casefile import FIELDS, SAMPLE_FIELDS, Field, Record, attributes, record
+from gearmesh.data.casefile import (
+    ALL_FIELDS,
+    FIELDS,
+    LOAD_FIELDS,
+    Field,
+    Record,
+    attributes,
+    record,
+    variable_attributes,
+)
 from gearmesh.errors import InputError
 from gearmesh.model.problem import Branches, Problem, State
 from gearmesh.solvers.response import Response
@@ -19,27 +28,15 @@ _FINAL_STATE = "final_state"
 _COUNTS = {"i1": -1, "i4": -1}
 
 
-def variable_attributes(field: Field, relative: bool = False) -> dict[str, object]:
-    """Return the CF attributes of a field, or of its twin in static deflections."""
-    stated: dict[str, object] = {
-        "units": "1" if relative else field.unit,
-        "long_name": field.long_name + (", in static deflections y_st" if relative else ""),
-    }
-    if field.flags:
-        stated["flag_values"] = np.array(list(field.flags), field.kind)
-        stated["flag_meanings"] = " ".join(field.flags.values())
-    return stated
-
-
 def run_dataset(response: Response, pair: Pair, case: Case) -> xr.Dataset:
     """Return one run as a dataset, with the variables and attributes of its case file.
 
     The samples have the dimension and coordinate ``time``, so ``ds.y.plot()`` works.
     """
-    columns = record(response, pair)
+    columns = record(response, pair, pair.problem(case.variant, case.nu))
     stated = attributes(pair, case) | {_FINAL_STATE: _written(response.final_state)}
     dataset = xr.Dataset(attrs=stated)
-    for field in (*FIELDS, *SAMPLE_FIELDS):
+    for field in ALL_FIELDS:
         if field.name in columns:
             dimension = "time" if field.dimension == "sample" else field.dimension
             for name, values, described in _twins(field, columns):
@@ -87,7 +84,10 @@ def _twins(field: Field, columns: Record) -> list[tuple[str, np.ndarray, dict[st
 
 
 def grid_dataset(
-    responses: Sequence[Response], pairs: Sequence[Pair], axes: Mapping[str, Sequence[object]]
+    responses: Sequence[Response],
+    pairs: Sequence[Pair],
+    axes: Mapping[str, Sequence[object]],
+    problems: Sequence[Problem] | None = None,
 ) -> xr.Dataset:
     """Return runs on a grid as a dataset.
 
@@ -99,6 +99,8 @@ def grid_dataset(
         The pair of each run; it sets the scales.
     axes : mapping of str to sequence
         Names and values of the axes, in their order.
+    problems : sequence of Problem, optional
+        The runs, if the dataset is to hold their loads; their responses must have samples.
 
     Returns
     -------
@@ -107,9 +109,10 @@ def grid_dataset(
         rows of extrema are filled with not-a-number.
     """
     shape = tuple(len(values) for values in axes.values())
-    records = [record(response, pair) for response, pair in zip(responses, pairs, strict=True)]
+    runs: Sequence[Problem | None] = problems or [None] * len(pairs)
+    records = [record(*run) for run in zip(responses, pairs, runs, strict=True)]
     dataset = xr.Dataset(coords={name: (name, list(values)) for name, values in axes.items()})
-    for field in FIELDS:
+    for field in (*FIELDS, *(LOAD_FIELDS if problems else ())):
         dimensions = (*axes, field.dimension) if field.dimension else tuple(axes)
         for name, _, stated in _twins(field, records[0]):
             cells = _stacked(field, [columns[name] for columns in records])

@@ -115,6 +115,11 @@ class Places:
         return self.folder / "report" / "index.html"
 
     @property
+    def explorer(self) -> Path:
+        """The page with which the results can be explored."""
+        return self.folder / "report" / "explorer.html"
+
+    @property
     def hashes(self) -> Path:
         """The SHA-256 of all results."""
         return self.folder / "manifest.sha256"
@@ -123,6 +128,11 @@ class Places:
     def as_expected(self) -> Path:
         """A file that exists if all claims have the statuses that the ledger expects."""
         return self.folder / "checks" / "as_expected.txt"
+
+    @property
+    def verification(self) -> Path:
+        """What `make verify` found, if it was run."""
+        return self.folder / "verification.json"
 
     @property
     def again(self) -> Path:

@@ -15,6 +15,7 @@ from gearmesh.interface.lengths import with_lengths
 from gearmesh.interface.orbits import Orbit
 from gearmesh.model.problem import Problem
 from gearmesh.study import units
+from gearmesh.study.alternatives import DECLARED
 from gearmesh.study.pair import Pair
 
 Limits = tuple[object, object]
@@ -243,11 +244,11 @@ def _declared(pair: Pair, name: str) -> tuple[str, str]:
     """Return unit and meaning of a parameter that can be followed."""
     if name == "nu":
         return "1", "mesh frequency nu_s"
-    for row in pair.parameters:
-        if row.name == name:
-            if isinstance(row.value, float):
-                return row.unit, row.description
-            raise InputError(f"{name}: found {row.value!r}; allowed are single real numbers")
+    if name in DECLARED:
+        value = getattr(pair, name)
+        if isinstance(value, float):
+            return DECLARED[name]["unit"], DECLARED[name]["description"]
+        raise InputError(f"{name}: found {value!r}; allowed are single real numbers")
     raise InputError(f"{name}: no such parameter; 'gearmesh parameters' lists all")
 
 

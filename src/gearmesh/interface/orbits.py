@@ -127,7 +127,7 @@ class Orbit:
 def find_orbit(
     pair: Pair,
     variant: str | Variant,
-    nu: float,
+    nu: float | str,
     *,
     periods: int = 1,
     start: Start | Orbit | None = None,
@@ -140,8 +140,8 @@ def find_orbit(
         The gear pair, without eccentricity, profile deviation and Fourier stiffness.
     variant : str or Variant
         Which damping terms act where.
-    nu : float
-        Mesh frequency ν_s.
+    nu : float or str
+        Mesh frequency ν_s, or the speed of wheel 3, as ``"3000 rpm"``.
     periods : int
         Its least period, in mesh periods.
     start : tuple or Orbit, optional
@@ -168,7 +168,7 @@ def find_orbit(
     """
     if isinstance(periods, bool) or not isinstance(periods, int) or not 1 <= periods <= 1000:
         raise InputError(f"periods: found {periods!r}; allowed is a whole number from 1 to 1000")
-    chosen, frequency = read_variant(variant), read_frequency(nu)
+    chosen, frequency = read_variant(variant), read_frequency(nu, pair)
     problem = pair.problem(chosen, frequency)
     state = None
     if isinstance(start, Orbit):

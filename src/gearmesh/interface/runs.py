@@ -21,14 +21,16 @@ from gearmesh.interface.statements import (
 )
 from gearmesh.model.variants import Variant
 from gearmesh.solvers import simulation
+from gearmesh.study.alternatives import DECLARED
 from gearmesh.study.cases import Case
 from gearmesh.study.pair import Pair
+from gearmesh.study.speeds import is_speed
 
 
 def simulate(
     pair: Pair,
     variant: str | Variant,
-    nu: float,
+    nu: float | str,
     *,
     revolutions: int | None = None,
     kept: int | None = None,
@@ -44,8 +46,8 @@ def simulate(
         The gear pair; `gearmesh.paper` returns the paper's.
     variant : str or Variant
         Which damping terms act where, as ``"c-lubricant"`` (``gearmesh variants`` lists all).
-    nu : float
-        Mesh frequency ν_s = ω_c/Ω_s.
+    nu : float or str
+        Mesh frequency ν_s = ω_c/Ω_s, or the speed of wheel 3, as ``"3000 rpm"``.
     revolutions, kept, samples_per_period : int, optional
         Revolutions that are run, how many of the last are kept, and samples of the time course
         in a mesh period; by default those of the pair (5, 1 and 256 in the paper).
@@ -84,7 +86,7 @@ def simulate(
         samples_per_period=samples_per_period,
         tolerance=tolerance,
     )
-    case = Case(read_variant(variant), read_frequency(nu), time_course=True)
+    case = Case(read_variant(variant), read_frequency(nu, pair), time_course=True)
     problem = pair.problem(case.variant, case.nu)
     if earlier is not None:
         problem = replace(problem, initial_state=final_state(earlier))
@@ -95,10 +97,11 @@ def simulate(
 def sweep(
     pair: Pair,
     variants: str | Variant | Sequence[str | Variant],
-    nu: float | Sequence[float] | np.ndarray,
+    nu: float | str | Sequence[float | str] | np.ndarray,
     *,
     over: Mapping[str, Sequence[object]] | None = None,
     direction: Literal["up", "down"] | None = None,
+    loads: bool = False,
     revolutions: int | None = None,
     kept: int | None = None,
     start: Start | None = None,
@@ -113,12 +116,15 @@ def sweep(
     variants : str, Variant or sequence of these
         Which damping terms act where.
     nu : array_like
-        Mesh frequencies ν_s.
+        Mesh frequencies ν_s, or speeds of wheel 3, as ``"3000 rpm"``.
     over : mapping of str to sequence, optional
         Parameters to vary and their values, as ``{"backlash": ["40 um", "8 y_st"]}``.
     direction : {"up", "down"}, optional
         Start each run from the end of the run at the next lower (``"up"``) or higher ν_s. By
         default all runs have the same initial condition.
+    loads : bool
+        Whether to measure tooth forces, dynamic factors, transmission errors and bearing forces,
+        too. They are measured on the time course, which takes a while.
     revolutions, kept, start, tolerance
         As for `simulate`.
 
@@ -143,7 +149,7 @@ def sweep(
     """
     if direction not in (None, "up", "down"):
         raise InputError(f"direction: found {direction!r}; allowed are 'up', 'down' and None")
-    chosen, nus = read_variants(variants), read_frequencies(nu)
+    chosen, nus = read_variants(variants), read_frequencies(nu, pair)
     pair = with_settings(
         pair, start, revolutions=revolutions, kept_revolutions=kept, tolerance=tolerance
     )
@@ -152,22 +158,37 @@ def sweep(
         pair.replace(**dict(zip(over, values, strict=True)))
         for values in itertools.product(*over.values())
     ]
+    _check_speeds(nu, [pair, *pairs])
     order = sorted(nus, reverse=direction == "down")
     places = list(itertools.product(chosen, pairs))
     chains = [[one.problem(variant, x) for x in order] for variant, one in places]
+    samples = pair.samples_per_period if loads else 0
     if direction is None:
         problems = list(itertools.chain(*chains))
-        found = iter(simulation.simulate(problems, pair.tolerance))
+        found = iter(simulation.simulate(problems, pair.tolerance, samples))
         responses = [list(itertools.islice(found, len(order))) for _ in chains]
     else:
-        responses = run_chains(chains, pair.tolerance)
+        responses = run_chains(chains, pair.tolerance, samples)
     at = {x: i for i, x in enumerate(order)}
-    rows = [responses[i * len(pairs) + j][at[x]] for i in range(len(chosen)) for x in nus
-            for j in range(len(pairs))]  # fmt: skip
+    cells = [(i * len(pairs) + j, at[x]) for i in range(len(chosen)) for x in nus
+             for j in range(len(pairs))]  # fmt: skip
+    rows = [responses[chain][place] for chain, place in cells]
+    states = [chains[chain][place] for chain, place in cells] if loads else None
     axes: dict[str, Sequence[object]] = {"variant": [variant.name for variant in chosen], "nu": nus}
     axes |= {name: _axis(name, values, pair) for name, values in over.items()}
-    dataset = grid_dataset(rows, pairs * (len(rows) // len(pairs)), axes)
+    dataset = grid_dataset(rows, pairs * (len(rows) // len(pairs)), axes, states)
     return _described(dataset, pair, over)
+
+
+def _check_speeds(nu: object, pairs: Sequence[Pair]) -> None:
+    """Refuse speeds where a parameter that is varied gives each another ν_s."""
+    if len({one.resonance_speed for one in pairs}) > 1:
+        for value in np.atleast_1d(np.asarray(nu)).tolist():
+            if is_speed(value):
+                raise InputError(
+                    f"nu: found {value!r}, but ν_s at a speed changes with a parameter in over; "
+                    "allowed are numbers ν_s"
+                )
 
 
 def _axis(name: str, values: Sequence[object], pair: Pair) -> list[float]:
@@ -183,8 +204,8 @@ def _described(dataset: xr.Dataset, pair: Pair, over: Mapping[str, object]) -> x
     """Give the axes of a sweep their units and names."""
     dataset["nu"].attrs = {"units": "1", "long_name": "mesh frequency nu_s"}
     dataset["variant"].attrs = {"long_name": "damping variant"}
-    for row in pair.parameters:
-        if row.name in over:
-            dataset[row.name].attrs = {"units": row.unit, "long_name": row.description}
+    for name in over:
+        declared = DECLARED[name]
+        dataset[name].attrs = {"units": declared["unit"], "long_name": declared["description"]}
     dataset.attrs = {"parameters": pair.canonical()}
     return dataset

@@ -10,9 +10,9 @@ import numpy as np
 from gearmesh.errors import InputError
 from gearmesh.model.variants import Variant, variant
 from gearmesh.study import units
-from gearmesh.study.frequencies import read_nu
 from gearmesh.study.loading import load_study
 from gearmesh.study.pair import Pair
+from gearmesh.study.speeds import read_nu_or_speed
 
 Start = tuple[object, object]
 """Initial condition: y and dy/dτ_s, each with its unit, or a number of static deflections."""
@@ -50,22 +50,31 @@ def read_variants(values: str | Variant | Iterable[str | Variant]) -> list[Varia
     return found
 
 
-def read_frequency(nu: float) -> float:
-    """Return a mesh frequency ν_s; raises InputError if the value is not one."""
+def read_frequency(nu: float | str, pair: Pair) -> float:
+    """Return a mesh frequency ν_s, also of a speed; raises InputError if the value is neither."""
     try:
-        return read_nu(nu.item() if isinstance(nu, np.generic) else nu)
+        return read_nu_or_speed(nu.item() if isinstance(nu, np.generic) else nu, pair)
     except ValueError as error:
         raise InputError(f"nu: found {nu!r}; {error}") from None
 
 
-def read_frequencies(nu: float | Sequence[float] | np.ndarray) -> list[float]:
+def read_frequencies(
+    nu: float | str | Sequence[float | str] | np.ndarray, pair: Pair
+) -> list[float]:
     """Return one mesh frequency or several, without repetition."""
-    found = [read_frequency(float(value)) for value in np.atleast_1d(np.asarray(nu, float))]
+    values = [nu] if isinstance(nu, str) else np.atleast_1d(np.asarray(nu)).tolist()
+    found = [read_frequency(value, pair) for value in values]
     if not found:
         raise InputError("nu: none given; allowed is one frequency or several")
     if len(set(found)) < len(found):
         raise InputError("nu: a frequency occurs twice; allowed is each once")
     return found
+
+
+def check_whole(name: str, value: object, low: int, high: int) -> None:
+    """Raise InputError if a value is not a whole number from `low` to `high`."""
+    if isinstance(value, bool) or not isinstance(value, int) or not low <= value <= high:
+        raise InputError(f"{name}: found {value!r}; allowed is a whole number from {low} to {high}")
 
 
 def with_settings(pair: Pair, start: Start | None = None, **settings: object) -> Pair:

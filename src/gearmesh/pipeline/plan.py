@@ -29,6 +29,7 @@ from gearmesh.study.cases import Case, Mechanisms, Study
 from gearmesh.study.loading import load_study
 
 _TEMPLATES = provenance.PACKAGE / "report" / "templates"
+_SCRIPTS = provenance.PACKAGE / "report" / "explorer" / "scripts"
 _STYLE = provenance.PACKAGE / "reproduction" / "figures" / "gearmesh.mplstyle"
 
 
@@ -198,6 +199,10 @@ _COMMITTED: dict[str, Callable[[], list[Path]]] = {
     "study_figures": lambda: [_STYLE],
     "why": lambda: [paths.notebook(paths.WHY), _STYLE],
     "notebook_pages": lambda: [_TEMPLATES / "notebook.html.j2", _TEMPLATES / "report.css"],
+    "explorer": lambda: [
+        *(_TEMPLATES / name for name in ("explorer.html.j2", "explorer.css", "report.css")),
+        *sorted(_SCRIPTS.rglob("*.js")),
+    ],
     "report": lambda: [
         *_templates(),
         *(paths.CAPTIONS / f"{name}.rst" for name in paths.FIGURE_NAMES),
@@ -239,7 +244,8 @@ _FACTS: dict[str, Callable[..., object]] = {
     "identified_figures": lambda plan: sorted(stated(plan.study.pair).items()),
     "printed": lambda plan: (plan.pair, _of_figure(plan.ledger, "printed")),
     "ledger": lambda plan: plan.ledger,
-    "report": lambda plan: _statements(plan.study),
+    "explorer": lambda plan: _statements(plan.study),
+    "report": lambda plan: (_statements(plan.study), _verified(plan.places)),
     "study_report": lambda plan: _statements(plan.study),
     "samples": lambda plan, design, index: (
         left_alone(plan.designs.designs[design], plan.study.pair),
@@ -258,6 +264,12 @@ def _grid(study: Study) -> list[tuple[str, Sequence[float]]]:
 
 def _of_figure(ledger: Iterable[Claim], figure: str) -> list[Claim]:
     return [claim for claim in ledger if claim.figure == figure]
+
+
+def _verified(places: Places) -> str | None:
+    """Return the hash of what `make verify` found; the report shows it."""
+    name = places.verification.name
+    return manifest.Hashes(places.folder).of([name])[name]
 
 
 def _statements(study: Study) -> tuple[object, ...]:

@@ -12,7 +12,7 @@ from gearmesh.data import provenance
 from gearmesh.report.presentation import number
 from gearmesh.solvers.response import STATUSES
 from gearmesh.study.cases import Study
-from gearmesh.study.derived import DERIVED
+from gearmesh.study.derived import derived as following
 
 
 @dataclass(frozen=True, slots=True)
@@ -37,7 +37,7 @@ def parameters(study: Study) -> Iterable[Parameter]:
 
 def derived(study: Study) -> Iterable[Parameter]:
     """Yield the rows of the parameters that follow from the given ones."""
-    for quantity in DERIVED:
+    for quantity in following(study.pair):
         value = _quantity(quantity.value(study.pair), quantity.unit)
         yield Parameter(quantity.name, quantity.symbol, quantity.formula, value)
 

@@ -18,7 +18,7 @@ from gearmesh.data.paths import Places
 from gearmesh.data.writing import write_text
 from gearmesh.identification import layout, table
 from gearmesh.identification.settings import load_settings
-from gearmesh.report import description
+from gearmesh.report import description, verification
 from gearmesh.report.identified import section
 from gearmesh.report.presentation import environment
 from gearmesh.reproduction.claims import Entry, load_ledger, read_entries, verdict
@@ -59,7 +59,10 @@ def write_report(study: Study, places: Places) -> None:
         for name in paths.FIGURE_NAMES
     }
     resonance = open_dataset(places.resonance)
-    page = render(study, read_entries(places.ledger), resonance, captions, _identified(study))
+    page = render(
+        *(study, read_entries(places.ledger), resonance, captions),
+        *(_identified(study), verification.section(places)),
+    )
     write_text(places.report, page)
 
 
@@ -80,6 +83,7 @@ def render(
     resonance: xr.Dataset,
     captions: dict[str, str],
     identified: str = "",
+    verified: str = "",
 ) -> str:
     """Return the page.
 
@@ -95,6 +99,8 @@ def render(
         Caption of each figure.
     identified : str
         HTML of the findings about the open parameters.
+    verified : str
+        HTML of what `make verify` found.
     """
     return (
         environment()
@@ -112,6 +118,7 @@ def render(
             stated=list(description.parameters(study)),
             derived=list(description.derived(study)),
             identified=identified,
+            verified=verified,
             computation=list(description.computation(study, resonance)),
             sensitivity=list(_sensitivity(resonance)),
         )

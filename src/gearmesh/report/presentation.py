@@ -101,7 +101,7 @@ def _target(target: Any, tolerance: float | None) -> str:
 def typeset(text: str) -> Markup:
     """Write symbols as the paper does: ν_s with a subscript, c-material as c-□."""
     text = _VARIANT.sub(_symbol, str(escape(text)))
-    return Markup(re.sub(r"(?<=\w)_([A-Za-z0-9]+)", r"<sub>\1</sub>", text))
+    return Markup(re.sub(r"(?<=[\w;])_([A-Za-z0-9]+)", r"<sub>\1</sub>", text))
 
 
 def _symbol(match: re.Match[str]) -> str:
@@ -121,6 +121,7 @@ def environment() -> jinja2.Environment:
         lstrip_blocks=True,
     )
     made.filters.update(number=number, found=found, expected=expected, typeset=typeset)
+    made.filters["log10"] = math.log10
     made.globals["status_labels"] = STATUS_LABELS
     return made
 

@@ -10,18 +10,23 @@ from pathlib import Path
 
 from gearmesh.errors import InputError
 from gearmesh.study import yamlfile
+from gearmesh.study.alternatives import NAMES, excluded_by
 from gearmesh.study.cases import Plan, Study
-from gearmesh.study.derived import DERIVED
+from gearmesh.study.derived import FOLLOWING
 from gearmesh.study.frequencies import read_nu
 from gearmesh.study.pair import Pair
 from gearmesh.study.provenance import Statement, read_statement
 from gearmesh.study.schema import nearest, shown, validate
+from gearmesh.study.speeds import as_nu
 
 _MAX_BASES = 8
 _NAME = re.compile(r"[A-Za-z0-9_-][A-Za-z0-9._-]{0,63}")
 _OWN = ("name", "title", "claims", "mechanisms")
 """Keys that a file does not inherit from its base: they identify the study itself, or ask for what
 takes longer than all its cases."""
+
+_OF_FREQUENCIES = ("nu", "strong_damping", "time_courses")
+"""Keys whose frequencies may be speeds in rpm."""
 
 
 def load_study(path: str | Path, overrides: Iterable[str] = ()) -> Study:
@@ -45,19 +50,23 @@ def load_study(path: str | Path, overrides: Iterable[str] = ()) -> Study:
     _check_keys(path, data)
     try:
         statements = {
-            key: read_statement(key, value)
-            for key, value in data.items()
-            if key in Pair.model_fields
+            key: read_statement(key, value) for key, value in data.items() if key in NAMES
         }
     except InputError as error:
         raise InputError(f"{path}: {error}") from None
     changed = {}
     for text in overrides:
         key, value = _override(text)
+        for other in excluded_by({key: value}):
+            statements.pop(other, None)
         statements[key] = Statement(value, reason="set on the command line")
         changed[key] = f"--set {text}"
     pair = Pair.from_statements(statements, str(path), changed)
-    plan = {key: value for key, value in data.items() if key not in Pair.model_fields}
+    plan = {
+        key: as_nu(value, pair) if key in _OF_FREQUENCIES else value
+        for key, value in data.items()
+        if key not in NAMES
+    }
     return Study(name, path, pair, _read_plan({"title": name, **plan}, own, path))
 
 
@@ -72,7 +81,7 @@ def _name(path: Path, name: object) -> str:
 
 def _check_keys(path: Path, data: Mapping[str, object]) -> None:
     """Refuse keys that are neither a parameter nor a key of the plan."""
-    known = [*Pair.model_fields, *Plan.model_fields, "name", "base"]
+    known = [*NAMES, *Plan.model_fields, "name", "base"]
     for key in data:
         if key not in known:
             raise InputError(f"{path}: {key:.60}: unknown key{_hint(key, known)}")
@@ -82,8 +91,8 @@ def _hint(key: str, known: Iterable[str]) -> str:
     """Suggest the nearest name, also for a key with a section before it."""
     known = list(known)
     last = key.rpartition(".")[2]
-    for computed in DERIVED:
-        if computed.name == last:
+    for computed in FOLLOWING:
+        if computed.name == last and last not in known:
             return f"; it is computed as {computed.formula}"
     if last in known:
         return f" (did you mean '{last}'?)"
@@ -155,14 +164,15 @@ def _merge(base: Mapping[str, object], own: Mapping[str, object]) -> dict[str, o
     """Merge `own` into `base`.
 
     Mappings are merged key by key, parameters and everything else are replaced, and an empty value
-    removes a key.
+    removes a key. A torque takes the place of an inherited static deflection, and so on.
     """
-    merged = dict(base)
+    replaced = excluded_by(own)
+    merged = {key: value for key, value in base.items() if key not in replaced}
     for key, value in own.items():
         inherited = merged.get(key)
         if value is None:
             merged.pop(key, None)
-        elif key in Pair.model_fields:
+        elif key in NAMES:
             merged[key] = value
         elif isinstance(value, Mapping) and isinstance(inherited, Mapping):
             merged[key] = _merge(inherited, value)
@@ -177,7 +187,7 @@ def _override(text: str) -> tuple[str, object]:
     key = key.strip()
     if not equals or not key:
         raise InputError(f"--set {text}: allowed is NAME=VALUE, as in backlash='40 um'")
-    if key not in Pair.model_fields:
+    if key not in NAMES:
         raise InputError(f"--set {text}: {key}: {_why_no_parameter(key)}")
     return key, yamlfile.read_value(value, f"--set {text}")
 
@@ -185,7 +195,7 @@ def _override(text: str) -> tuple[str, object]:
 def _why_no_parameter(key: str) -> str:
     if key.partition(".")[0] in (*Plan.model_fields, "name", "base"):
         return "not a parameter; the file of a study states it"
-    return f"no such parameter{_hint(key, Pair.model_fields)}"
+    return f"no such parameter{_hint(key, NAMES)}"
 
 
 def load(path: str | Path) -> Study:

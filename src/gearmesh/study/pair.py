@@ -15,14 +15,19 @@ from pydantic import PrivateAttr, model_validator
 from gearmesh.model import stiffness
 from gearmesh.model.problem import Problem
 from gearmesh.model.variants import Variant
+from gearmesh.study.alternatives import (
+    ALTERNATIVES,
+    DECLARED,
+    KG_PER_N_S2_MM,
+    MM_PER_M,
+    excluded_by,
+    with_stored,
+)
 from gearmesh.study.parameters import SETTINGS, Parameters
 from gearmesh.study.problem import problem_of
 from gearmesh.study.provenance import DEFAULT, SETTING, STATED, Statement
 from gearmesh.study.relative import resolved
-from gearmesh.study.schema import validate
-
-KG_PER_N_S2_MM = 1000.0
-"""1 N s²/mm = 1000 kg: it makes stiffnesses in N/mm and masses in kg consistent."""
+from gearmesh.study.schema import read_declared, validate
 
 
 class Parameter(NamedTuple):
@@ -64,8 +69,8 @@ class Pair(Parameters):
 
     @model_validator(mode="before")
     @classmethod
-    def _resolve_relative_values(cls, data: object) -> object:
-        return resolved(data) if isinstance(data, dict) else data
+    def _resolve_values(cls, data: object) -> object:
+        return resolved(with_stored(data)) if isinstance(data, dict) else data
 
     @classmethod
     def from_statements(
@@ -98,7 +103,8 @@ class Pair(Parameters):
     def replace(self, **changes: object) -> "Pair":
         """Return a pair with other values, such as ``replace(backlash="40 um", teeth=24)``.
 
-        Quantities carry units. Values that are stated relative to a replaced one follow it.
+        Quantities carry units. Values that are stated relative to a replaced one follow it. A
+        torque takes the place of the static deflection, and so on (`ALTERNATIVES`).
 
         Raises
         ------
@@ -106,7 +112,10 @@ class Pair(Parameters):
             One line: which parameter, what was found, what is allowed.
         """
         new = {name: Statement(value) for name, value in changes.items()}
-        return Pair.from_statements({**self._all_statements(), **new})
+        kept = self._all_statements()
+        for name in excluded_by(changes):
+            kept.pop(name, None)
+        return Pair.from_statements({**kept, **new})
 
     def model_copy(self, *, update: Mapping[str, Any] | None = None, deep: bool = False) -> Self:
         """Copy without validation; the copy holds the values, but not how they were stated."""
@@ -117,7 +126,7 @@ class Pair(Parameters):
     def _all_statements(self) -> dict[str, Statement]:
         """Return the statements; a pair that was built from bare values has none."""
         if self._statements:
-            return self._statements
+            return dict(self._statements)
         return {
             name: Statement(_with_unit(getattr(self, name), declared["unit"]))
             for name, declared in self.declarations().items()
@@ -126,23 +135,29 @@ class Pair(Parameters):
 
     @property
     def parameters(self) -> list[Parameter]:
-        """Every parameter with its value, unit, symbol, kind and reason, in a fixed order."""
+        """Every parameter with its value, unit, symbol, kind and reason, in a fixed order.
+
+        Of a parameter and its alternative, such as static deflection and torque, the one that was
+        stated is listed; the other one follows (`gearmesh.study.derived`).
+        """
         statements = self._all_statements()
-        listed = []
-        for name, declared in self.declarations().items():
-            statement = statements.get(name, Statement(None, DEFAULT))
-            kind = statement.kind
-            if name in SETTINGS and kind in (DEFAULT, STATED):
-                kind = SETTING
-            description = type(self).model_fields[name].description or ""
-            value = getattr(self, name)
-            listed.append(
-                Parameter(
-                    *(name, declared["symbol"], value, declared["unit"]),
-                    *(description, kind, statement.reason),
-                )
-            )
-        return listed
+        names = list(self.declarations())
+        for name, alternative in ALTERNATIVES.items():
+            if name in statements and statements[name].value is not None:
+                names[names.index(alternative.replaces[0])] = name
+                names = [other for other in names if other not in alternative.replaces]
+        missing = Statement(None, DEFAULT)
+        return [self._listed(name, statements.get(name, missing)) for name in names]
+
+    def _listed(self, name: str, statement: Statement) -> Parameter:
+        kind = statement.kind
+        if name in SETTINGS and kind in (DEFAULT, STATED):
+            kind = SETTING
+        declared = DECLARED[name]
+        return Parameter(
+            *(name, declared["symbol"], getattr(self, name), declared["unit"]),
+            *(declared["description"], kind, statement.reason),
+        )
 
     @property
     def stiffness_min(self) -> float:
@@ -160,9 +175,14 @@ class Pair(Parameters):
         return math.sqrt(self.stiffness_mean * KG_PER_N_S2_MM / self.reduced_mass)
 
     @property
+    def resonance_speed(self) -> float:
+        """Speed of wheel 3 in rpm at which ν_s = 1: 60 Ω_s/(2π Z_3)."""
+        return 60.0 * self.natural_frequency / (2.0 * math.pi * self.teeth)
+
+    @property
     def damping_ratio(self) -> float:
         """D = k/(2 √(C_s m_red)), the paper's proportional damping."""
-        return self.damping_ratio_of(self.damping)
+        return self._as_stated("damping_ratio", self.damping_ratio_of(self.damping))
 
     def damping_ratio_of(self, damping: float) -> float:
         """Return k/(2 √(C_s m_red)) of a damping coefficient k in N·s/mm."""
@@ -173,6 +193,27 @@ class Pair(Parameters):
     def static_force(self) -> float:
         """F_st = C_s y_st in N."""
         return self.stiffness_mean * self.static_deflection
+
+    @property
+    def torque(self) -> float:
+        """M_3 = F_st R_b3 in N·m."""
+        return self._as_stated("torque", self.static_force * self.base_radius / MM_PER_M)
+
+    @property
+    def inertia(self) -> tuple[float, float]:
+        """J_3 and J_2 in kg·m², with m_red = 1/(R_b3²/J_3 + R_b2²/J_2)."""
+        square = (self.base_radius / MM_PER_M) ** 2
+        masses = 1.0 + self.mass_ratio, 1.0 + 1.0 / self.mass_ratio
+        return self._as_stated(
+            "inertia", tuple(mass * self.reduced_mass * square for mass in masses)
+        )
+
+    def _as_stated(self, name: str, computed: Any) -> Any:
+        """Return an alternative as it was stated; converting it back would round it."""
+        statement = self._statements.get(name)
+        if statement is None or statement.value is None:
+            return computed
+        return read_declared(statement.value, DECLARED[name])
 
     @property
     def velocity_scale(self) -> float:

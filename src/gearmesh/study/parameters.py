@@ -1,7 +1,7 @@
 """The parameters of a gear pair and of its runs: unit, symbol, meaning and range of each."""
 
 import math
-from typing import Any, Self
+from typing import Self
 
 from pydantic import model_validator
 
@@ -27,6 +27,11 @@ class Parameters(Section):
     )
     reduced_mass: float = quantity(
         "kg", "m_red", "reduced mass of the wheels on the mesh line", 1e-6, 1e6
+    )
+    mass_ratio: float = quantity(
+        *("1", "μ", "ratio of the wheels' masses on the mesh line, (J_3/R_b3²)/(J_2/R_b2²)"),
+        *(1e-6, 1e6),
+        default=1.0,
     )
     teeth: int = quantity("1", "Z", "number of teeth of each wheel", 3, 1000)
     damping: float = quantity(
@@ -114,12 +119,3 @@ class Parameters(Section):
                 f"{self.revolutions} that are run"
             )
         return self
-
-    @classmethod
-    def declarations(cls) -> dict[str, dict[str, Any]]:
-        """Return the declaration (unit, symbol, range) of each parameter by its name."""
-        declared = {}
-        for name, info in cls.model_fields.items():
-            assert isinstance(info.json_schema_extra, dict)
-            declared[name] = dict(info.json_schema_extra)
-        return declared

@@ -3,6 +3,7 @@
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
+from gearmesh.errors import InputError
 from gearmesh.model.motion import state_at
 from gearmesh.model.problem import Problem
 from gearmesh.model.variants import Variant
@@ -13,6 +14,10 @@ if TYPE_CHECKING:
 
 def problem_of(pair: "Pair", variant: Variant, nu: float) -> Problem:
     """State one run in static deflections, 1/Ω_s and static forces (`Pair.problem`)."""
+    if pair.mass_ratio != 1.0:
+        raise InputError(
+            f"mass_ratio: found {pair.mass_ratio:g}; allowed is 1, wheels with equal J/R_b²"
+        )
     y_st, c_s = pair.static_deflection, pair.stiffness_mean
     eccentricity_3, eccentricity_2 = pair.eccentricity
     problem = Problem(

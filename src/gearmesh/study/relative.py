@@ -6,7 +6,7 @@ from typing import Any
 from gearmesh.model import stiffness
 from gearmesh.study import units
 from gearmesh.study.parameters import Parameters
-from gearmesh.study.schema import read_quantity, shown
+from gearmesh.study.schema import read_declared, shown
 
 
 def resolved(data: dict[str, Any]) -> dict[str, Any]:
@@ -21,19 +21,11 @@ def resolved(data: dict[str, Any]) -> dict[str, Any]:
 
 
 def _scale(scale: str, data: Mapping[str, Any], user: str) -> float:
-    """Return the size of a scale, for `user` and other parameters that are stated in it.
-
-    A mistake in the scale itself is reported here, once, and not for each of them.
-    """
+    """Return the size of a scale, for `user` and other parameters that are stated in it."""
     declared = Parameters.declarations()
 
     def read(parameter: str) -> float:
-        if data.get(parameter) is None:
-            raise ValueError(f"{parameter}: missing; {user} is stated in {scale}")
-        try:
-            return float(read_quantity(data[parameter], declared[parameter]))  # type: ignore[arg-type]
-        except (ValueError, TypeError) as error:
-            raise ValueError(f"{parameter}: found {shown(data[parameter])}; {error}") from None
+        return float(read_parameter(parameter, data, declared, f"{user} is stated in {scale}"))
 
     if scale == "y_st":
         return read("static_deflection")
@@ -41,3 +33,37 @@ def _scale(scale: str, data: Mapping[str, Any], user: str) -> float:
         return read("reduced_mass")
     highest = read("mesh_stiffness_max")
     return stiffness.mean(read("contact_ratio"), highest, read("stiffness_ratio") * highest)
+
+
+def read_parameter(
+    name: str, data: Mapping[str, Any], declared: Mapping[str, Mapping[str, Any]], reason: str
+) -> Any:
+    """Return a parameter, in its unit, that others follow from.
+
+    A mistake in it is reported here, once, and not for each of them.
+
+    Parameters
+    ----------
+    name : str
+        The parameter.
+    data : mapping of str to object
+        What is stated.
+    declared : mapping of str to mapping
+        Unit and range of each parameter.
+    reason : str
+        Why it is needed, for the message.
+
+    Raises
+    ------
+    ValueError
+        If it is missing or wrong; the message begins with its name.
+    """
+    if data.get(name) is None:
+        raise ValueError(f"{name}: missing; {reason}")
+    try:
+        value = read_declared(data[name], declared[name])
+    except ValueError as error:
+        raise ValueError(f"{name}: found {shown(data[name])}; {error}") from None
+    if isinstance(value, tuple) and not declared[name]["of_wheels"]:
+        raise ValueError(f"{name}: found {shown(data[name])}; allowed is a single value")
+    return value

@@ -63,9 +63,22 @@ class Section(BaseModel):
         declared = field.json_schema_extra
         if not isinstance(declared, dict) or (value is None and not field.is_required()):
             return value
-        if declared["of_wheels"]:
-            return _read_of_wheels(value, declared)
-        return read_quantity(value, declared)
+        return read_declared(value, declared)
+
+    @classmethod
+    def declarations(cls) -> dict[str, dict[str, Any]]:
+        """Return unit, symbol, range and description of each quantity by its name."""
+        extras = {name: info.json_schema_extra for name, info in cls.model_fields.items()}
+        return {
+            name: {**extra, "description": cls.model_fields[name].description or ""}
+            for name, extra in extras.items()
+            if isinstance(extra, dict)
+        }
+
+
+def read_declared(value: object, declared: Mapping[str, Any]) -> object:
+    """Read a quantity as it is declared: of the wheels, one value serves both."""
+    return (_read_of_wheels if declared["of_wheels"] else read_quantity)(value, declared)
 
 
 def _read_of_wheels(value: object, declared: Mapping[str, Any]) -> object:

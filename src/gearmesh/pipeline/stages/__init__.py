@@ -14,7 +14,13 @@ STAGES = {
         *(mechanisms.orbits, mechanisms.branches, mechanisms.basins, mechanisms.sweeps),
         *(mechanisms.bands, mechanisms.lyapunov, mechanisms.special_curves, mechanisms.why),
         *(claims.printed, claims.ledger, claims.verdict),
-        *(report.notebook_pages, report.report, report.study_report, report.hashes),
+        *(
+            report.notebook_pages,
+            report.explorer,
+            report.report,
+            report.study_report,
+            report.hashes,
+        ),
         *(identify.samples, identify.box, identify.all_samples, identify.identified),
         identify.identification_notebook,
     )

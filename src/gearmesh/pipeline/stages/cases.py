@@ -82,7 +82,10 @@ def _kept(study: Study, places: Places, files: dict[Case, Path], path: Path) -> 
 
 def _reuse(study: Study, case: Case, path: Path) -> Record | None:
     wanted = casefile.attributes(study.pair, case)
-    attributes, record = casefile.read_case(path)
+    try:
+        attributes, record = casefile.read_case(path)
+    except InputError:  # it is of another format, from an earlier version
+        return None
     if attributes.get("case_sha256") != wanted["case_sha256"]:
         return None
     if attributes != wanted:

@@ -17,6 +17,14 @@ def notebook_pages(study: Study, places: Places) -> list[Path]:
     return [*pages.values()]
 
 
+def explorer(study: Study, places: Places) -> list[Path]:
+    """Write the explorer: the numbers of the study, with a solver that runs in the page."""
+    from gearmesh.report.explorer.page import write_explorer
+
+    write_explorer(study, places)
+    return [places.explorer]
+
+
 def report(study: Study, places: Places) -> list[Path]:
     """Write the report page: it opens from disk, without a network."""
     from gearmesh.report.page import write_report

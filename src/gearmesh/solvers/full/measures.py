@@ -3,16 +3,23 @@
 import numpy as np
 
 from gearmesh.model.contact import CONTACT_LOSS, INVERSE_MESH
+from gearmesh.model.motion import Y_2, Y_3
 from gearmesh.solvers.compilation import inner
 from gearmesh.solvers.full.roots import evaluate, evaluate_with_slope
-from gearmesh.solvers.full.series import FRICTION, STIFFNESS, V, Y
+from gearmesh.solvers.full.series import FRICTION, NORMAL, STIFFNESS, V, Y
 from gearmesh.solvers.response import MAXIMUM, MEASURED, MINIMUM
 
 SUMMARY = np.dtype([*MEASURED, ("samples", np.int64)])
 """What is measured on a run, and how many samples were taken."""
 
 SAMPLE = np.dtype(
-    [(name, np.float64) for name in ("time", "y", "v", "a", "stiffness", "friction", "regime")]
+    [
+        (name, np.float64)
+        for name in (
+            *("time", "y", "v", "a", "stiffness", "friction", "regime"),
+            *("normal", "transmission_error", "bearing_3", "bearing_2"),
+        )
+    ]
 )
 
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(16)
@@ -63,7 +70,19 @@ def sample(case, segment, mode, fourier, series, until, samples, per_period, sum
         if case.friction != 0.0:
             sample.friction = evaluate(series[FRICTION], case.order - 2, since)
         sample.regime = mode.regime
+        sample.normal = evaluate(series[NORMAL], case.order - 2, since)
+        sample.transmission_error = evaluate(series[0], case.order, since)
+        sample.transmission_error += evaluate(series[1], case.order, since)
+        sample.bearing_3 = _bearing_force(case, series[Y_3], since)
+        sample.bearing_2 = _bearing_force(case, series[Y_2], since)
         summary.samples += 1
+
+
+@inner
+def _bearing_force(case, row, since):
+    """Return what a body exerts on its bearing, from the series of its displacement."""
+    displacement, rate = evaluate_with_slope(row, case.order, since)
+    return case.bearing_stiffness * displacement + case.bearing_damping * rate
 
 
 @inner

@@ -259,6 +259,10 @@ def _samples(rows: np.ndarray) -> Samples:
         stiffness=columns["stiffness"],
         modified_stiffness=columns["stiffness"] * (regime != CONTACT_LOSS),
         force_dynamic=dynamic_force(columns["y"], columns["stiffness"]),
+        force_normal=columns["normal"],
         force_friction=columns["friction"],
+        force_bearing_3=columns["bearing_3"],
+        force_bearing_2=columns["bearing_2"],
+        transmission_error=columns["transmission_error"],
         regime=regime,
     )

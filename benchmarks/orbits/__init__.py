@@ -1,0 +1,1 @@
+"""Benchmarks of orbits and basins, beside what a user would write with other packages."""

@@ -1,0 +1,89 @@
+"""The parameters that the explorer can change, and how its sliders show them."""
+
+from dataclasses import dataclass
+
+from gearmesh.study.pair import Pair
+
+
+@dataclass(frozen=True, slots=True)
+class Control:
+    """A slider with a field for numbers.
+
+    Attributes
+    ----------
+    name : str
+        The parameter.
+    low, high, step : float
+        Of the slider, in the unit that is shown.
+    scale : str
+        Parameter that is the unit, ``static_deflection`` or ``reduced_mass``; empty for the
+        library's own unit.
+    logarithmic : bool
+        Whether the slider is logarithmic; `step` is then one of the decimal logarithm.
+    """
+
+    name: str
+    low: float
+    high: float
+    step: float
+    scale: str = ""
+    logarithmic: bool = False
+
+
+_LENGTH = "static_deflection"
+
+CONTROLS = (
+    Control("damping", 0.0, 40.0, 0.05),
+    Control("backlash", 0.5, 20.0, 0.1, _LENGTH),
+    Control("damping_length", 0.05, 5.0, 0.01, _LENGTH, logarithmic=True),
+    Control("initial_phase", 0.0, 1.0, 0.005),
+    Control("initial_displacement", -4.0, 4.0, 0.05, _LENGTH),
+    Control("initial_velocity", -3.0, 3.0, 0.05, _LENGTH),
+    Control("contact_ratio", 1.0, 2.0, 0.005),
+    Control("stiffness_ratio", 0.3, 1.0, 0.005),
+    Control("friction_coefficient", 0.0, 0.3, 0.005),
+    Control("body_mass", 1.0, 1e4, 0.02, "reduced_mass", logarithmic=True),
+    Control("bearing_stiffness", 1e4, 1e8, 0.02, logarithmic=True),
+    Control("bearing_damping_ratio", 0.0, 0.5, 0.005),
+    Control("revolutions", 1, 40, 1),
+)
+"""In the order of the page."""
+
+_SYMBOLS = {"static_deflection": "y_st", "reduced_mass": "m_red"}
+
+
+@dataclass(frozen=True, slots=True)
+class Shown:
+    """A control with all that the page writes beside it; numbers are in the unit that is shown."""
+
+    control: Control
+    symbol: str
+    description: str
+    unit: str
+    factor: float
+    value: float
+    least: float
+    greatest: float
+
+
+def shown(pair: Pair) -> list[Shown]:
+    """Return the controls for the parameters of a pair."""
+    rows = {row.name: row for row in pair.parameters}
+    found = []
+    for control in CONTROLS:
+        row, factor = rows[control.name], 1.0
+        unit = "" if row.unit == "1" else row.unit.replace("*", " ")
+        if control.scale:
+            factor, unit = float(rows[control.scale].value), _SYMBOLS[control.scale]
+        # Only the initial displacement may be open: static equilibrium, which is y_st.
+        value = factor if row.value is None else row.value
+        extra = Pair.model_fields[control.name].json_schema_extra
+        assert isinstance(extra, dict)
+        least, greatest = (float(extra[end]) / factor for end in ("low", "high"))  # type: ignore[arg-type]
+        found.append(
+            Shown(
+                *(control, row.symbol, row.description, unit),
+                *(factor, float(f"{value / factor:.12g}"), least, greatest),
+            )
+        )
+    return found
