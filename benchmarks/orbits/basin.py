@@ -4,10 +4,10 @@ import time
 from dataclasses import dataclass, replace
 
 import numpy as np
+from gearmesh.dynamics.attractors import Basins, basins
 
 import gearmesh as gm
 from benchmarks.orbits import settling
-from gearmesh.dynamics.attractors import Basins, basins
 from gearmesh.model.problem import Problem
 from gearmesh.model.variants import variant
 

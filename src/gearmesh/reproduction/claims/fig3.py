@@ -45,8 +45,8 @@ def orderly_bands(evidence: Evidence) -> tuple[dict[str, dict[str, float]], str]
         for key in ("smooth", "growth")
     }
     return measured, (
-        f"share of the steps of {SCAN:g} in ν_s over which both edges of the band change by at most "
-        f"{EDGE_STEP:g} y_st, and the greatest maximum near 0.66 over the median elsewhere"
+        f"share of the steps of {SCAN:g} in ν_s over which both edges of the band change by at "
+        f"most {EDGE_STEP:g} y_st, and the greatest maximum near 0.66 over the median elsewhere"
     )
 
 

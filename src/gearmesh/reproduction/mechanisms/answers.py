@@ -147,8 +147,8 @@ def time_constant(branches: xr.Dataset, variant: str, nu: float) -> float:
     own = (branches["variant"] == variant) & (branches["stability"] == 1)
     own &= branches["periods"] == 1
     points = branches.isel(point=np.flatnonzero(own)).sortby("nu")
-    size = np.hypot(points["multipliers_real"], points["multipliers_imaginary"]).max("multiplier")
-    inside = points["nu"].values
+    parts = (points[f"multipliers_{part}"].values for part in ("real", "imaginary"))
+    size, inside = np.hypot(*parts).max(axis=1), points["nu"].values
     if not inside.size or not inside[0] <= nu <= inside[-1]:
         return np.nan
     return float(-1.0 / np.log(np.interp(nu, inside, size)))
@@ -160,17 +160,20 @@ def _bands(bands: xr.Dataset, thresholds: Mapping[str, Any]) -> list[dict[str, A
     for name in (name for name in BANDED if name in bands["variant"].values):
         for count in bands["revolutions"].values:
             curve = bands.sel(variant=name, revolutions=count)
-            values = (curve[key].values for key in ("y_max_rel", "y_min_rel", "spread_rel"))
+            names = ("nu", "y_max_rel", "y_min_rel", "spread_rel")
+            nu, high, low, spread = (curve[key].values for key in names)
             end = _threshold(thresholds, "second_jump", name)
-            measured = band(curve["nu"].values, *values, end)
+            measured = band(nu, high, low, spread, end)
             found.append({"variant": name, "revolutions": int(count), **measured})
     return found
 
 
 def _changes(bands: xr.Dataset) -> list[tuple[float, float]]:
     """Return the steps in ν_s, and the change of single maxima over them, as a median."""
-    median = bands["change_rel"].median("variant").values if bands.sizes["variant"] else []
-    return list(zip(bands["step"].values.tolist(), np.asarray(median).tolist(), strict=False))
+    if not bands.sizes["variant"]:
+        return []
+    median = np.median(bands["change_rel"].values, axis=0)
+    return list(zip(bands["step"].values.tolist(), median.tolist(), strict=True))
 
 
 def _cusps(curves: xr.Dataset) -> dict[tuple[str, str], tuple[float, float]]:
