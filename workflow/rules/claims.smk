@@ -17,9 +17,7 @@ rule printed:
 rule ledger:
     input:
         checks=expand(PLACES.check("{name}"), name=paths.CHECKED),
-        orbits=(
-            [PLACES.special_points, PLACES.thresholds] if PLAN.study.plan.mechanisms else []
-        ),
+        orbits=([PLACES.special_points, PLACES.thresholds] if PLAN.study.plan.mechanisms else []),
         again=PLAN.again("ledger"),
     output:
         report(PLACES.ledger, caption="../report/claims.rst", category="Claims"),

@@ -157,6 +157,13 @@ class Places:
         """The figures of the notebook about what lies behind the curves."""
         return [file for name in WHY_FIGURES for file in self.figure_files(name)]
 
+    @property
+    def of_why(self) -> list[Path]:
+        """All that the report reads about what lies behind the curves."""
+        datasets = [self.mechanism(name) for name in MECHANISMS]
+        stated = [self.branches, self.special_points, self.thresholds]
+        return [*stated, *datasets, *self.why_files]
+
     def orbits(self, letter: str) -> tuple[Path, Path]:
         """Return the branches and the special points of a letter of Tab. 1."""
         return self.folder / "orbits" / f"{letter}.nc", self.folder / "orbits" / f"{letter}.json"

@@ -197,18 +197,22 @@ _COMMITTED: dict[str, Callable[[], list[Path]]] = {
     "fig1": lambda: [_STYLE],
     "identified_figures": lambda: [_STYLE, layout.IDENTIFIED, layout.SETTINGS],
     "study_figures": lambda: [_STYLE],
-    "why": lambda: [paths.notebook(paths.WHY), _STYLE],
-    "notebook_pages": lambda: [_TEMPLATES / "notebook.html.j2", _TEMPLATES / "report.css"],
+    "why": lambda: [paths.notebook(paths.WHY), _STYLE, _TEMPLATES / "points.html.j2"],
+    "notebook_pages": lambda: [
+        _TEMPLATES / name for name in ("notebook.html.j2", "base.html.j2", "report.css")
+    ],
     "explorer": lambda: [
-        *(_TEMPLATES / name for name in ("explorer.html.j2", "explorer.css", "report.css")),
+        *(
+            _TEMPLATES / name
+            for name in ("explorer.html.j2", "base.html.j2", "explorer.css", "report.css")
+        ),
         *sorted(_SCRIPTS.rglob("*.js")),
     ],
     "report": lambda: [
         *_templates(),
-        *(paths.CAPTIONS / f"{name}.rst" for name in paths.FIGURE_NAMES),
+        *(paths.CAPTIONS / f"{name}.rst" for name in (*paths.FIGURE_NAMES, *paths.WHY_FIGURES)),
         *(layout.IDENTIFIED, layout.SETTINGS, paths.CLAIMS),
     ],
-    "study_report": _templates,
     "box": lambda: [paths.CLAIMS],
     "identified": lambda: [layout.SETTINGS, paths.CLAIMS],
     "identification_notebook": lambda: [
@@ -246,7 +250,6 @@ _FACTS: dict[str, Callable[..., object]] = {
     "ledger": lambda plan: plan.ledger,
     "explorer": lambda plan: _statements(plan.study),
     "report": lambda plan: (_statements(plan.study), _verified(plan.places)),
-    "study_report": lambda plan: _statements(plan.study),
     "samples": lambda plan, design, index: (
         left_alone(plan.designs.designs[design], plan.study.pair),
         provenance.versions(),

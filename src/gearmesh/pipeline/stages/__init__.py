@@ -18,7 +18,6 @@ STAGES = {
             report.notebook_pages,
             report.explorer,
             report.report,
-            report.study_report,
             report.hashes,
         ),
         *(identify.samples, identify.box, identify.all_samples, identify.identified),

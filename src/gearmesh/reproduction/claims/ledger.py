@@ -63,6 +63,7 @@ class Claim(Section):
     id: str = Field(pattern=r"^[A-Z][0-9]+(\.[0-9]+)?$", description="P1, F2.1, ...")
     where: str = Field(min_length=1, description="place in the paper")
     figure: Figure = Field(description="whose notebook checks it; 'printed' for bare numbers")
+    quote: str | None = Field(None, description="what the paper says, at most one sentence")
     statement: str = Field(min_length=1, description="the claim in our own words")
     kind: Kind
     expected: Target | dict[str, Target]
@@ -114,9 +115,9 @@ class Claim(Section):
 class Entry(Claim):
     """A claim with what was found.
 
-    `mechanism` names the orbit that explains the claim, if one does. `judged` is false if something that the claim is about is missing in the study (a smoke study
-    has few variants). The status is then 'not_testable', and the claim counts neither for nor
-    against.
+    `mechanism` names the orbit that explains the claim, if one does. `judged` is false if something
+    that the claim is about is missing in the study (a smoke study has few variants). The status is
+    then 'not_testable', and the claim counts neither for nor against.
     """
 
     measured: Any = None
@@ -132,7 +133,7 @@ class Entry(Claim):
 
     def as_json(self) -> dict[str, Any]:
         """Return the entry in the form of `results/claims.json`."""
-        optional = {"tolerance_reason", "reason", "mechanism"}
+        optional = {"quote", "tolerance_reason", "reason", "mechanism"}
         found = self.model_dump(mode="json")
         return {
             key: _rounded(value)

@@ -1,5 +1,6 @@
 """What the datasets say in numbers: the answers of the report, and the mechanisms of claims."""
 
+from collections import defaultdict
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
@@ -9,7 +10,7 @@ import xarray as xr
 from gearmesh.reproduction.mechanisms.bands import NEAR_FIRST_JUMP, band
 from gearmesh.reproduction.mechanisms.bands import VARIANTS as BANDED
 from gearmesh.reproduction.mechanisms.starts import VARIANT
-from gearmesh.reproduction.mechanisms.sweeps import SEPARATE
+from gearmesh.reproduction.mechanisms.sweeps import DIRECTIONS, SEPARATE
 from gearmesh.reproduction.mechanisms.tables import Row
 
 KINDS = ("switching", "flip", "grazing_front", "grazing_back", "fold", "torus", "branch_point")
@@ -73,7 +74,8 @@ def answers(
     """
     return {
         "points": Points(rows),
-        "five": lambda observable, name: _threshold(thresholds, observable, name),
+        "five_of": lambda observable, name: _threshold(thresholds, observable, name),
+        "five_of_jump": lambda name: _first_jump(thresholds, name),
         "doubled": _doubled(datasets["branches"]),
         "starts": _starts(datasets["phases"]),
         "basins": _shares(datasets["basins"]),
@@ -92,6 +94,12 @@ def answers(
 def _threshold(thresholds: Mapping[str, Any], observable: str, name: str) -> float:
     found = thresholds.get(observable, {}).get(name)
     return found if isinstance(found, float) else np.nan
+
+
+def _first_jump(thresholds: Mapping[str, Any], name: str) -> float:
+    """Return where five revolutions of a variant with □ or × jump first."""
+    found = thresholds.get("jumps", {}).get(name)
+    return float(found[0]["nu"]) if isinstance(found, list) and found else np.nan
 
 
 def _doubled(branches: xr.Dataset) -> dict[str, tuple[float, float]]:
@@ -129,7 +137,7 @@ def _sweep_jumps(sweeps: xr.Dataset) -> dict[str, dict[str, float]]:
 
     With • only the second jump is looked for: what is above the first one.
     """
-    found: dict[str, dict[str, float]] = {}
+    found: dict[str, dict[str, float]] = defaultdict(lambda: dict.fromkeys(DIRECTIONS, np.nan))
     for name in map(str, sweeps["variant"].values):
         for direction in map(str, sweeps["direction"].values):
             low = NEAR_FIRST_JUMP[1] if name.endswith("lubricant") else 0.0
@@ -138,7 +146,7 @@ def _sweep_jumps(sweeps: xr.Dataset) -> dict[str, dict[str, float]]:
             nu, steps = curve["nu"].values, np.abs(np.diff(curve.values))
             at = int(np.nanargmax(steps))
             jump = float(0.5 * (nu[at] + nu[at + 1])) if steps[at] > SEPARATE else np.nan
-            found.setdefault(name, {})[direction] = jump
+            found[name][direction] = jump
     return found
 
 
