@@ -102,6 +102,10 @@ if PLAN.study.claims:
     include: "workflow/rules/claims.smk"
     include: "workflow/rules/report.smk"
 
+    if PLAN.study.plan.mechanisms:
+
+        include: "workflow/rules/why.smk"
+
 else:
 
     include: "workflow/rules/study.smk"

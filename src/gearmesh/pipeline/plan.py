@@ -198,6 +198,7 @@ _COMMITTED: dict[str, Callable[[], list[Path]]] = {
     "fig1": lambda: [_STYLE],
     "identified_figures": lambda: [_STYLE, layout.IDENTIFIED, layout.SETTINGS],
     "study_figures": lambda: [_STYLE],
+    "why": lambda: [paths.notebook(paths.WHY), _STYLE, _TEMPLATES / "points.html.j2"],
     "notebook_pages": lambda: [
         _TEMPLATES / name for name in ("notebook.html.j2", "base.html.j2", "report.css")
     ],
@@ -210,7 +211,7 @@ _COMMITTED: dict[str, Callable[[], list[Path]]] = {
     ],
     "report": lambda: [
         *_templates(),
-        *(paths.CAPTIONS / f"{name}.rst" for name in paths.FIGURE_NAMES),
+        *(paths.CAPTIONS / f"{name}.rst" for name in (*paths.FIGURE_NAMES, *paths.WHY_FIGURES)),
         *(layout.IDENTIFIED, layout.SETTINGS, paths.CLAIMS),
     ],
     "box": lambda: [paths.CLAIMS],
@@ -236,7 +237,10 @@ _FACTS: dict[str, Callable[..., object]] = {
     ),
     **{
         stage: lambda plan: (plan.study.title, plan.pair, plan.mechanisms)
-        for stage in ("branches", "basins", "sweeps", "lyapunov", "special_curves")
+        for stage in (
+            *("branches", "basins", "sweeps", "bands", "lyapunov", "special_curves"),
+            *("why",),
+        )
     },
     "figure": lambda plan, name: (
         *(plan.study.title, plan.pair, plan.study.time_courses),

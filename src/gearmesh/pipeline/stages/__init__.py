@@ -21,7 +21,7 @@ STAGES = {
         *(cases.cases, cases.case, datasets.datasets, datasets.thresholds),
         *(figures.fig1, figures.figure, figures.identified_figures, figures.study_figures),
         *(mechanisms.orbits, mechanisms.branches, mechanisms.basins, mechanisms.sweeps),
-        *(mechanisms.lyapunov, mechanisms.special_curves),
+        *(mechanisms.bands, mechanisms.lyapunov, mechanisms.special_curves, mechanisms.why),
         *(claims.printed, claims.ledger, claims.verdict),
         *(
             report.notebook_pages,
