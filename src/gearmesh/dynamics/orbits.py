@@ -267,7 +267,9 @@ def _improve(orbit: Orbit) -> Orbit | None:
     """Return the orbit after one damped correction, or None if no correction improves it."""
     correction = newton_correction(orbit.passage, orbit.state)
     share = 1.0
-    while share >= _SHORTEST_CORRECTION:
+    # At the accuracy of an orbit, rounding decides whether a shorter correction improves it.
+    shortest = 1.0 if orbit.residual < LARGEST_RESIDUAL else _SHORTEST_CORRECTION
+    while share >= shortest:
         state = orbit.state + share * correction
         moved = passage(orbit.problem, state, orbit.periods)
         candidate = replace(orbit, state=state, passage=moved)
