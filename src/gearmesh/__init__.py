@@ -20,9 +20,11 @@ if TYPE_CHECKING:
         follow,
         follow_special,
     )
+    from gearmesh.interface.geometry import Geometry, geometry
     from gearmesh.interface.lyapunov import lyapunov_spectrum
     from gearmesh.interface.orbits import Orbit, find_orbit
     from gearmesh.interface.runs import simulate, sweep
+    from gearmesh.interface.spectra import campbell, spectrum
     from gearmesh.interface.statements import paper
     from gearmesh.study.loading import load
     from gearmesh.study.pair import Pair
@@ -31,6 +33,7 @@ __version__ = "0.2.0"
 
 __all__ = [
     "Branch",
+    "Geometry",
     "InputError",
     "NoOrbit",
     "Orbit",
@@ -39,13 +42,16 @@ __all__ = [
     "SpecialPoint",
     "attractors",
     "basins",
+    "campbell",
     "find_orbit",
     "follow",
     "follow_special",
+    "geometry",
     "load",
     "lyapunov_spectrum",
     "paper",
     "simulate",
+    "spectrum",
     "sweep",
 ]
 
@@ -56,9 +62,11 @@ _MODULES = {
         *("Branch", "SpecialCurve", "SpecialPoint"),
         *("follow", "follow_special"),
     ),
+    "gearmesh.interface.geometry": ("Geometry", "geometry"),
     "gearmesh.interface.lyapunov": ("lyapunov_spectrum",),
     "gearmesh.interface.orbits": ("Orbit", "find_orbit"),
     "gearmesh.interface.runs": ("simulate", "sweep"),
+    "gearmesh.interface.spectra": ("campbell", "spectrum"),
     "gearmesh.interface.statements": ("paper",),
     "gearmesh.study.loading": ("load",),
     "gearmesh.study.pair": ("Pair",),

@@ -34,7 +34,7 @@ ELSEWHERE = {
     "make test": "runs this test",
     "make lint": ".ci/run runs it",
     "make docs": ".ci/run runs it",
-    "make identify": "tests/identification/test_identification_runs.py runs a small design",
+    "make identify": "tests/identification/test_samples.py runs a small design",
     ".venv/bin/pre-commit install": "changes the hooks of the repository that it runs in",
     ".venv/bin/snakemake --profile profiles/slurm": "tests/workflow/test_slurm.py runs it",
     "snakemake --profile profiles/slurm": "tests/workflow/test_slurm.py runs it",
@@ -144,3 +144,11 @@ def test_what_runs_elsewhere_is_printed_somewhere() -> None:
         for command in commands(block.code)
     }
     assert [command for command in ELSEWHERE if command not in printed] == []
+
+
+def test_what_runs_elsewhere_names_a_test_or_a_step_that_is_there() -> None:
+    named = {name for how in ELSEWHERE.values() for name in re.findall(r"[\w.]+/[\w/.]+\w", how)}
+    assert [name for name in named if not (ROOT / name).exists()] == []
+    steps = (ROOT / ".ci" / "run").read_text(encoding="utf-8")
+    run_there = [command for command, how in ELSEWHERE.items() if ".ci/run" in how]
+    assert [command for command in run_there if command not in steps] == []

@@ -1,7 +1,11 @@
 # The explorer: a page beside the report with the numbers of the study, and a solver.
 rule explorer:
     input:
-        read=[PLACES.resonance, PLACES.bifurcation],
+        read=[
+            PLACES.resonance,
+            PLACES.bifurcation,
+            [PLACES.branches, PLACES.special_points] if PLAN.study.plan.mechanisms else [],
+        ],
         again=PLAN.again("explorer"),
     output:
         PLACES.explorer,

@@ -9,8 +9,15 @@ from typing import Any
 import numpy as np
 from numba import njit
 
-from gearmesh.model.contact import CONTACT_LOSS, INVERSE_MESH, dynamic_force, regime_of
-from gearmesh.model.problem import Branches, Problem, State
+from gearmesh.model.contact import (
+    CONTACT_LOSS,
+    INVERSE_MESH,
+    dynamic_force,
+    elastic_force,
+    regime_of,
+)
+from gearmesh.model.damping import damping_force
+from gearmesh.model.problem import Branches, GeneralTerms, Problem, State
 from gearmesh.model.segments import Segment, segments
 from gearmesh.solvers import limits
 from gearmesh.solvers.compilation import persistent
@@ -53,7 +60,12 @@ _scalar_sweep = persistent(_build_scalar_sweep)
 
 
 def is_reducible(problem: Problem) -> bool:
-    """Return whether a problem has no run-out, profile deviation or Fourier stiffness."""
+    """Return whether a problem has equal wheels without run-out and no term beyond the paper's.
+
+    Profile deviation and a truncated series of the stiffness are such terms.
+    """
+    if problem.wheels is not None or problem.terms != GeneralTerms():
+        return False
     return not (problem.has_run_out or problem.deviation or problem.stiffness_harmonics)
 
 
@@ -215,12 +227,12 @@ def _final_state(problem: Problem, summary: Mapping[str, Any]) -> State:
 
 
 class _Samples:
-    """A time course like `response.Samples`; all but y, v and a is computed on demand."""
+    """A time course like `response.Samples`; what follows from it is computed on demand."""
 
     def __init__(self, problem: Problem, rows: np.ndarray, per_period: int) -> None:
         self._problem = problem
         self._per_period = per_period
-        self.y, self.v, self.a = rows[:, : problem.kept_periods * per_period]
+        self.y, self.v, self.a, self._b, self._b_rate = rows[:, : problem.kept_periods * per_period]
 
     @cached_property
     def time(self) -> np.ndarray:
@@ -246,6 +258,31 @@ class _Samples:
     @cached_property
     def force_dynamic(self) -> np.ndarray:
         return dynamic_force(self.y, self.stiffness)
+
+    @cached_property
+    def force_normal(self) -> np.ndarray:
+        problem = self._problem
+        elastic = elastic_force(self.y, self.stiffness, self.regime, problem.backlash)
+        damping = np.where(
+            self.regime == CONTACT_LOSS,
+            damping_force(self.v, problem.lubricant),
+            damping_force(self.v, problem.material),
+        )
+        return elastic + damping
+
+    @cached_property
+    def transmission_error(self) -> np.ndarray:
+        return self.y - self._b
+
+    @cached_property
+    def force_bearing_3(self) -> np.ndarray:
+        # The bodies move alike, in opposite directions.
+        damping, _ = self._problem.both_wheels[0].bearing_damping
+        return 0.5 * (self._problem.bearing_stiffness * self._b + damping * self._b_rate)
+
+    @cached_property
+    def force_bearing_2(self) -> np.ndarray:
+        return -self.force_bearing_3
 
     @cached_property
     def force_friction(self) -> np.ndarray:
