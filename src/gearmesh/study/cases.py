@@ -82,6 +82,9 @@ class Plan(Section):
     mechanisms: Mechanisms | None = Field(
         None, description="orbits and attractors behind the response curves; none if left out"
     )
+    loads: bool = Field(
+        False, description="whether the files hold tooth forces and transmission errors, too"
+    )
     case_files: bool = Field(
         True, description="whether cases without a time course have files of their own too"
     )
@@ -146,12 +149,15 @@ class Case:
         Whether its file holds the time course.
     direction : {"up", "down"}, optional
         In a sweep, the direction in which runs follow one another.
+    loads : bool
+        Whether its file holds what engineers report of a run.
     """
 
     variant: Variant
     nu: float
     time_course: bool = False
     direction: str | None = None
+    loads: bool = False
 
 
 @dataclass(frozen=True)
@@ -229,7 +235,7 @@ class Study:
         for chosen, nus in plan:
             courses = set(self.time_courses.get(chosen.name, ()))
             for nu in sorted({*nus, *courses}):
-                yield Case(chosen, nu, nu in courses, self.plan.direction)
+                yield Case(chosen, nu, nu in courses, self.plan.direction, self.plan.loads)
 
     def has_file(self, case: Case) -> bool:
         """Return whether a case has a file of its own; one with a time course always has."""
