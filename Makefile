@@ -13,12 +13,11 @@ BENCH_STAMP := .venv/.installed-bench
 DOCS_STAMP := .venv/.installed-docs
 STALE := $(shell sh .ci/stale_environment $(if $(filter file,$(origin PYTHON)),,$(PYTHON)))
 PIP := $(BIN)/python -I -m pip install --quiet --disable-pip-version-check
-# The lock names all that is needed, so pip resolves nothing; and Python compiles what is imported when
-# it is, which is a fraction of what pip would compile.
 # Nothing without a hash is ever installed, so the few packages that come as sources are built
 # with the setuptools of the lock instead of one that pip would fetch for the purpose.
 # The lock is complete, so pip need not resolve: it would also stumble over extras in hash mode.
-LOCKED := $(PIP) --require-hashes --no-build-isolation --no-deps --no-compile
+# Python compiles what is imported when it is: a fraction of what pip would compile.
+LOCKED := $(PIP) --require-hashes --no-deps --no-build-isolation --no-compile
 SNAKEMAKE := $(BIN)/python -I -m snakemake $(if $(CORES),--cores $(CORES))
 UV_COMPILE := uv pip compile --quiet --universal --python-version 3.11 --fork-strategy fewest \
 	--generate-hashes --no-annotate --no-header --no-emit-index-url
