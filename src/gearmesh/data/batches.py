@@ -6,7 +6,7 @@ many cases leaves them out (``case_files: false``), and its datasets are the sam
 """
 
 import itertools
-from collections.abc import Container, Iterable, Iterator, Sequence
+from collections.abc import Container, Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -57,14 +57,6 @@ class Content:
             for field, name in _stored(self.columns)
         }
         return Content(self.variants[cases], self.nu[cases], self.counts[cases], columns)
-
-
-def by_letter(cases: Iterable[Case]) -> dict[str, list[Case]]:
-    """Return the cases of each letter of Tab. 1, in their order."""
-    found: dict[str, list[Case]] = {}
-    for case in cases:
-        found.setdefault(case.variant.letter, []).append(case)
-    return found
 
 
 def write_batch(path: Path, pair: Pair, cases: Sequence[Case], records: Sequence[Record]) -> None:

@@ -25,5 +25,14 @@ def notebook_page(path: Path) -> str:
     )
     body, _ = exporter.from_notebook_node(nbformat.read(path, as_version=4))
     template = environment().get_template("notebook.html.j2")
-    style = HtmlFormatter(style="friendly").get_style_defs(".highlight")
-    return template.render(name=path.stem, body=body, highlighting=style)
+    light, dark = (
+        HtmlFormatter(style=style).get_style_defs(".highlight") for style in ("default", "monokai")
+    )
+    return template.render(
+        name=path.stem,
+        title=f"Fig. {path.stem.removeprefix('fig')}",
+        # Code that is wider than the page is scrolled by keyboard, too.
+        body=body.replace('<div class="highlight', '<div tabindex="0" class="highlight'),
+        highlighting=light,
+        dark_highlighting=dark,
+    )

@@ -1,6 +1,6 @@
 """A study: a pair, its variants and mesh frequencies, and the cases that follow from them."""
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
@@ -219,14 +219,23 @@ class Study:
 
         A frequency with a time course is a case of its variant even if it is not on the grid.
         """
-        cases = []
-        for chosen, nus in self.plan.frequencies():
+        return tuple(self._cases(self.plan.frequencies()))
+
+    @property
+    def letters(self) -> list[str]:
+        """The letters of Tab. 1 of which the study has variants."""
+        return list(dict.fromkeys(variant.letter for variant, _ in self.plan.frequencies()))
+
+    def of_letter(self, letter: str) -> list[Case]:
+        """Return the cases of a letter of Tab. 1, in their order."""
+        plan = self.plan.frequencies()
+        return list(self._cases(part for part in plan if part[0].letter == letter))
+
+    def _cases(self, plan: Iterable[tuple[Variant, tuple[float, ...]]]) -> Iterator[Case]:
+        for chosen, nus in plan:
             courses = set(self.time_courses.get(chosen.name, ()))
-            cases += [
-                Case(chosen, nu, nu in courses, self.plan.direction, self.plan.loads)
-                for nu in sorted({*nus, *courses})
-            ]
-        return tuple(cases)
+            for nu in sorted({*nus, *courses}):
+                yield Case(chosen, nu, nu in courses, self.plan.direction, self.plan.loads)
 
     def has_file(self, case: Case) -> bool:
         """Return whether a case has a file of its own; one with a time course always has."""

@@ -28,8 +28,10 @@ EVERY = 2.0
 
 def cases(study: Study, places: Places, letter: str) -> list[Path]:
     """Bring the case files and the batch file of a letter up to date."""
-    wanted = batches.by_letter(study.cases)[letter]
-    files = {case: places.case(case.variant.name, case.nu) for case in wanted}
+    wanted = study.of_letter(letter)
+    files = {
+        case: places.case(case.variant.name, case.nu) for case in wanted if study.has_file(case)
+    }
     records = _kept(study, places, files, places.manifest(f"cases-{letter}"))
     kept = len(records)
     if study.plan.direction:
@@ -45,7 +47,7 @@ def cases(study: Study, places: Places, letter: str) -> list[Path]:
             printed = time.monotonic()
     batch = places.batch(letter)
     batches.write_batch(batch, study.pair, wanted, [records[case] for case in wanted])
-    written = [file for case, file in files.items() if study.has_file(case)]
+    written = list(files.values())
     _remove_others(places, letter, written)
     counts = f"{len(wanted) - kept} computed, {kept} kept"
     say(f"{letter}: {counts}{f', {failed} not integrated' if failed else ''}")
