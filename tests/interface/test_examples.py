@@ -54,3 +54,14 @@ def test_ross_62_62_has_the_numbers_of_its_source_and_resonates(example):
     off, near = found.dynamic_factor.values
     assert near > 1.5 * off
     assert found.contact_loss_fraction.values[0] == 0.0 < found.contact_loss_fraction.values[1]
+
+
+def test_ross_20_20_has_the_mean_force_of_its_source_and_parts(example):
+    """test_mesh_with_backlash expects a mean mesh force of 3191.996 N to one per cent."""
+    study = example("ross-20-20")
+    assert study.pair.stiffness_mean == pytest.approx(517_925, rel=1e-3)
+    run = gm.simulate(study.pair, "b-both", "1000 rpm", revolutions=8)
+    assert float(run.force_normal.mean()) == pytest.approx(3191.996, rel=0.01)
+    assert float(run.contact_loss_fraction) == 0.0
+    fast = gm.simulate(study.pair, "b-both", "5000 rpm", revolutions=8)
+    assert float(fast.contact_loss_fraction) > 0.2
