@@ -132,5 +132,5 @@ class Involute:
 
     @cached_property
     def mesh_stiffness(self) -> float:
-        """c_gamma_alpha of ISO 6336-1 (2006), clause 9: mean stiffness, c' (0.75 epsilon + 0.25)."""
+        """c_gamma_alpha of ISO 6336-1 (2006), clause 9: the mean, c' (0.75 epsilon + 0.25)."""
         return self.single_stiffness * (0.75 * self.contact_ratio + 0.25)
