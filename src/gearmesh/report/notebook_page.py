@@ -31,8 +31,14 @@ def notebook_page(path: Path) -> str:
     return template.render(
         name=path.stem,
         title=f"Fig. {path.stem.removeprefix('fig')}",
-        # Code that is wider than the page is scrolled by keyboard, too.
-        body=body.replace('<div class="highlight', '<div tabindex="0" class="highlight'),
+        body=_scrollable(body),
         highlighting=light,
         dark_highlighting=dark,
     )
+
+
+def _scrollable(body: str) -> str:
+    """Let code and tables that are wider than the page be scrolled, by keyboard too."""
+    box = '<div class="scroll" tabindex="0" role="region" aria-label="Table">'
+    body = body.replace("<table", f"{box}<table").replace("</table>", "</table></div>")
+    return body.replace('<div class="highlight', '<div tabindex="0" class="highlight')
