@@ -20,7 +20,7 @@ from gearmesh.data.paths import Places
 from gearmesh.data.writing import write_text
 from gearmesh.identification import layout, table
 from gearmesh.identification.settings import load_settings
-from gearmesh.report import description, verification
+from gearmesh.report import description, verification, why
 from gearmesh.report.explorer import views
 from gearmesh.report.identified import section
 from gearmesh.report.presentation import environment
@@ -99,9 +99,26 @@ def write_report(study: Study, places: Places) -> None:
     pictures = {name: embedded(places.figure_files(name)[1]) for name in captions}
     page = render(
         *(study, read_entries(places.ledger), resonance, captions, pictures),
-        *(_identified(study), verification.section(places)),
+        *(_identified(study), verification.section(places), _why(study, places)),
     )
     write_text(places.report, page)
+
+
+def _why(study: Study, places: Places) -> str:
+    """Return the section about orbits and attractors; nothing if the study follows none."""
+    if study.plan.mechanisms is None:
+        return ""
+    figures = {
+        name: Figure(
+            name,
+            title,
+            " ".join((paths.CAPTIONS / f"{name}.rst").read_text(encoding="utf-8").split()),
+            embedded(places.figure_files(name)[1]),
+            f"notebooks/{paths.WHY}.html",
+        )
+        for name, title in why.TITLES.items()
+    }
+    return why.section(study, places, figures)
 
 
 def embedded(picture: Path) -> str:
@@ -130,6 +147,7 @@ def render(
     pictures: Mapping[str, str],
     identified: str = "",
     verified: str = "",
+    orbits: str = "",
 ) -> str:
     """Return the page of the paper's study.
 
@@ -147,6 +165,8 @@ def render(
         HTML of the findings about the open parameters.
     verified : str
         HTML of what `make verify` found.
+    orbits : str
+        HTML of the section about orbits and attractors.
     """
     figures = [_figure(name, captions[name], pictures[name], entries) for name in captions]
     template = environment().get_template("report.html.j2")
@@ -162,6 +182,7 @@ def render(
         derived=description.derived(study),
         identified=identified,
         verified=verified,
+        orbits=orbits,
         computation=list(description.computation(study, resonance)),
         sensitivity=list(_sensitivity(resonance)),
     )
