@@ -6,6 +6,7 @@ import nbformat
 from nbconvert import HTMLExporter
 from pygments.formatters import HtmlFormatter
 
+from gearmesh.data.paths import WHY
 from gearmesh.report.presentation import environment
 
 
@@ -30,11 +31,16 @@ def notebook_page(path: Path) -> str:
     )
     return template.render(
         name=path.stem,
-        title=f"Fig. {path.stem.removeprefix('fig')}",
+        title=_title(path.stem),
         body=_scrollable(body),
         highlighting=light,
         dark_highlighting=dark,
     )
+
+
+def _title(name: str) -> str:
+    """Return the title of what a notebook draws."""
+    return "Why it jumps" if name == WHY else f"Fig. {name.removeprefix('fig')}"
 
 
 def _scrollable(body: str) -> str:
