@@ -12,7 +12,7 @@ rule explorer:
         ],
         again=PLAN.again("explorer"),
     output:
-        PLACES.explorer,
+        report(PLACES.explorer, caption="../report/explorer.rst", category="Report"),
     log:
         PLACES.log("explorer"),
     benchmark:
