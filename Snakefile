@@ -65,6 +65,7 @@ localrules:
     report,
     identify,
     box,
+    crate,
     hashes,
 
 
@@ -73,6 +74,7 @@ rule all:
         PLACES.resonance,
         PLACES.report,
         PLACES.hashes,
+        PLACES.crate,
         PLACES.as_expected if PLAN.study.claims else [],
         [PLACES.branches, PLACES.special_points] if PLAN.study.plan.mechanisms else [],
 
@@ -110,6 +112,7 @@ else:
 
 
 include: "workflow/rules/identify.smk"
+include: "workflow/rules/crate.smk"
 include: "workflow/rules/hashes.smk"
 
 

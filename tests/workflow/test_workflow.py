@@ -128,7 +128,7 @@ def test_neither_the_times_of_sources_nor_snakemake_s_records_matter(smoke, tmp_
 
 
 # What an edit reruns: (what is edited, how, which jobs run).
-END = {"ledger", "notebook_pages", "report", "hashes", "verdict"}
+END = {"ledger", "notebook_pages", "report", "crate", "hashes", "verdict"}
 CASES = {f"cases-{letter}" for letter in LETTERS}
 AFTER_CASES = {"datasets", "explorer", "why", *FIGURES, *END}
 AFTER_BRANCHES = {"basins", "special_curves", "explorer", "why", *END}
@@ -136,7 +136,7 @@ MECHANISMS = {"orbits-c", "branches", "sweeps", "bands", "lyapunov", *AFTER_BRAN
 EVERYTHING = {*CASES, "thresholds", "printed", *AFTER_CASES, *MECHANISMS}
 STATED = {"identified_figures", *EVERYTHING}
 AFTER_THRESHOLDS = {"thresholds", "printed", *FIGURES, *END}
-REPORTED = {"report", "hashes", "verdict"}
+REPORTED = {"report", "crate", "hashes", "verdict"}
 
 INCREMENTS = {
     "README": ("README.md", "#", "# more\n#", set()),

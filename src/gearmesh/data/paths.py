@@ -125,6 +125,16 @@ class Places:
         return self.folder / "manifest.sha256"
 
     @property
+    def crate(self) -> Path:
+        """The provenance of the study, as an RO-Crate; the crate is the folder of the study."""
+        return self.folder / "ro-crate-metadata.json"
+
+    @property
+    def inputs(self) -> Path:
+        """Folder of the copies of what the study was made from."""
+        return self.folder / "inputs"
+
+    @property
     def as_expected(self) -> Path:
         """A file that exists if all claims have the statuses that the ledger expects."""
         return self.folder / "checks" / "as_expected.txt"

@@ -15,13 +15,14 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
 
-from gearmesh.data import batches, casefile, manifest, paths, provenance
+from gearmesh.data import casefile, manifest, paths, provenance
 from gearmesh.data.paths import Places
 from gearmesh.errors import InputError
 from gearmesh.identification import layout
 from gearmesh.identification.design import left_alone, stated
 from gearmesh.identification.settings import Settings, load_settings
 from gearmesh.pipeline import locks
+from gearmesh.pipeline.inputs import inputs
 from gearmesh.pipeline.messages import say
 from gearmesh.pipeline.stages import STAGES, job_name
 from gearmesh.reproduction.claims import Claim, load_ledger
@@ -60,7 +61,7 @@ class Plan:
     @cached_property
     def letters(self) -> dict[str, list[Case]]:
         """The cases of each letter of Tab. 1."""
-        return batches.by_letter(self.study.cases)
+        return {letter: self.study.of_letter(letter) for letter in self.study.letters}
 
     @cached_property
     def ledger(self) -> list[Claim]:
@@ -253,6 +254,10 @@ _FACTS: dict[str, Callable[..., object]] = {
     "ledger": lambda plan: plan.ledger,
     "explorer": lambda plan: _statements(plan.study),
     "report": lambda plan: (_statements(plan.study), _verified(plan.places)),
+    "crate": lambda plan: (
+        _statements(plan.study),
+        [(str(path), provenance.digest([path])) for path in inputs(plan.study)],
+    ),
     "samples": lambda plan, design, index: (
         left_alone(plan.designs.designs[design], plan.study.pair),
         provenance.versions(),

@@ -4,7 +4,16 @@ A stage imports within its body what only it needs. A job therefore starts quick
 only if something that it uses changes (`gearmesh.data.provenance.code_digest`).
 """
 
-from gearmesh.pipeline.stages import cases, claims, datasets, figures, identify, mechanisms, report
+from gearmesh.pipeline.stages import (
+    cases,
+    claims,
+    crate,
+    datasets,
+    figures,
+    identify,
+    mechanisms,
+    report,
+)
 
 STAGES = {
     stage.__name__: stage
@@ -20,6 +29,7 @@ STAGES = {
             report.report,
             report.hashes,
         ),
+        crate.crate,
         *(identify.samples, identify.box, identify.all_samples, identify.identified),
         identify.identification_notebook,
     )

@@ -17,8 +17,7 @@ from gearmesh.model.contact import (
     regime_of,
 )
 from gearmesh.model.damping import damping_force
-from gearmesh.model.motion import bearing_damping
-from gearmesh.model.problem import Branches, Problem, State
+from gearmesh.model.problem import Branches, GeneralTerms, Problem, State
 from gearmesh.model.segments import Segment, segments
 from gearmesh.solvers import limits
 from gearmesh.solvers.compilation import persistent
@@ -61,7 +60,12 @@ _scalar_sweep = persistent(_build_scalar_sweep)
 
 
 def is_reducible(problem: Problem) -> bool:
-    """Return whether a problem has no run-out, profile deviation or Fourier stiffness."""
+    """Return whether a problem has equal wheels without run-out and no term beyond the paper's.
+
+    Profile deviation and a truncated series of the stiffness are such terms.
+    """
+    if problem.wheels is not None or problem.terms != GeneralTerms():
+        return False
     return not (problem.has_run_out or problem.deviation or problem.stiffness_harmonics)
 
 
@@ -272,7 +276,7 @@ class _Samples:
     @cached_property
     def force_bearing_3(self) -> np.ndarray:
         # The bodies move alike, in opposite directions.
-        damping = bearing_damping(self._problem)
+        damping, _ = self._problem.both_wheels[0].bearing_damping
         return 0.5 * (self._problem.bearing_stiffness * self._b + damping * self._b_rate)
 
     @cached_property
