@@ -49,23 +49,10 @@ wildcard_constraints:
     root=re.escape(os.getcwd()),
 
 
-# Short rules run where Snakemake runs, also on a cluster.
+# Short rules run where Snakemake runs, also on a cluster; each file of rules names its own.
 localrules:
     all,
     data,
-    datasets,
-    figures,
-    fig1,
-    study_figures,
-    identified_figures,
-    printed,
-    ledger,
-    verdict,
-    notebook_pages,
-    report,
-    identify,
-    box,
-    hashes,
 
 
 rule all:
@@ -73,6 +60,7 @@ rule all:
         PLACES.resonance,
         PLACES.report,
         PLACES.hashes,
+        PLACES.crate,
         PLACES.as_expected if PLAN.study.claims else [],
         [PLACES.branches, PLACES.special_points] if PLAN.study.plan.mechanisms else [],
 
@@ -100,12 +88,17 @@ if PLAN.study.claims:
     include: "workflow/rules/claims.smk"
     include: "workflow/rules/report.smk"
 
+    if PLAN.study.plan.mechanisms:
+
+        include: "workflow/rules/why.smk"
+
 else:
 
     include: "workflow/rules/study.smk"
 
 
 include: "workflow/rules/identify.smk"
+include: "workflow/rules/crate.smk"
 include: "workflow/rules/hashes.smk"
 
 

@@ -10,7 +10,10 @@ import time
 from pathlib import Path
 
 ROOT = Path(__file__).parents[1]
-COPIED = ("Snakefile", "config", "notebooks", "profiles", "src", "workflow", "README.md")
+COPIED = (
+    *("Snakefile", "config", "notebooks", "profiles", "src", "workflow"),
+    *("README.md", "CITATION.cff", "requirements.lock"),
+)
 PATIENCE = 280
 """Seconds after which a run hangs."""
 

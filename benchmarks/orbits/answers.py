@@ -7,9 +7,9 @@ drive, an impact or a map are not the library's; they are for other solvers.
 from collections.abc import Callable
 
 import numpy as np
-from gearmesh.dynamics.lyapunov import lyapunov_spectrum
 
 from benchmarks.orbits.known import Case, cases
+from gearmesh.dynamics.attraction.lyapunov import lyapunov_spectrum
 from gearmesh.dynamics.branches import follow
 from gearmesh.dynamics.orbits import find_orbit
 from gearmesh.dynamics.starts import linear_orbit

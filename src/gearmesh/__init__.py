@@ -20,6 +20,7 @@ if TYPE_CHECKING:
         follow,
         follow_special,
     )
+    from gearmesh.interface.geometry import Geometry, geometry
     from gearmesh.interface.lyapunov import lyapunov_spectrum
     from gearmesh.interface.orbits import Orbit, find_orbit
     from gearmesh.interface.runs import simulate, sweep
@@ -32,6 +33,7 @@ __version__ = "0.2.0"
 
 __all__ = [
     "Branch",
+    "Geometry",
     "InputError",
     "NoOrbit",
     "Orbit",
@@ -44,6 +46,7 @@ __all__ = [
     "find_orbit",
     "follow",
     "follow_special",
+    "geometry",
     "load",
     "lyapunov_spectrum",
     "paper",
@@ -59,6 +62,7 @@ _MODULES = {
         *("Branch", "SpecialCurve", "SpecialPoint"),
         *("follow", "follow_special"),
     ),
+    "gearmesh.interface.geometry": ("Geometry", "geometry"),
     "gearmesh.interface.lyapunov": ("lyapunov_spectrum",),
     "gearmesh.interface.orbits": ("Orbit", "find_orbit"),
     "gearmesh.interface.runs": ("simulate", "sweep"),

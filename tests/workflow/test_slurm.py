@@ -1,4 +1,4 @@
-"""A figure of the small study, with all that it needs, on a real Slurm: the same bytes as without."""
+"""One figure of the small study, with all that it needs, on a real Slurm: the same bytes."""
 
 import os
 import shutil

@@ -1,14 +1,11 @@
 # One file with the hashes of all results, for `sha256sum -c`.
+localrules:
+    hashes,
+
+
 rule hashes:
     input:
-        read=[
-            PLACES.resonance,
-            PLACES.bifurcation,
-            PLACES.report,
-            PLACES.explorer,
-            expand(PLACES.batch("{letter}"), letter=LETTERS),
-            [PLACES.branches, PLACES.special_points] if PLAN.study.plan.mechanisms else [],
-        ],
+        read=[rules.crate.input.read, PLACES.crate],
         again=PLAN.again("hashes"),
     output:
         PLACES.hashes,

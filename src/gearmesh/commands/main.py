@@ -223,6 +223,25 @@ def _add_tables(commands: "argparse._SubParsersAction[_Parser]", pair: _Parser) 
     )
     parameters.set_defaults(run=_parameters)
 
+    geometry = commands.add_parser(
+        "geometry", help="contact ratio and stiffness of steel wheels from their drawing"
+    )
+    geometry.add_argument("--module", required=True, help="such as '3 mm'")
+    geometry.add_argument(
+        "--teeth", required=True, nargs="+", metavar="Z", help="one number, or those of 3 and 2"
+    )
+    geometry.add_argument("--face-width", required=True, help="such as '20 mm'")
+    geometry.add_argument("--pressure-angle", default="20 deg", help="(default: 20 deg)")
+    geometry.add_argument(
+        "--profile-shift",
+        nargs="+",
+        default=["0"],
+        metavar="X",
+        help="in modules: one for both wheels, or those of 3 and 2 (default: 0)",
+    )
+    geometry.add_argument("--centre-distance", help="(default: without backlash)")
+    geometry.set_defaults(run=_geometry)
+
 
 def _simulate(options: argparse.Namespace) -> int:
     from gearmesh.commands.runs import simulate
@@ -264,6 +283,12 @@ def _variants(options: argparse.Namespace) -> int:
     from gearmesh.commands.tables import variants
 
     return variants(options)
+
+
+def _geometry(options: argparse.Namespace) -> int:
+    from gearmesh.commands.tables import geometry
+
+    return geometry(options)
 
 
 def _parameters(options: argparse.Namespace) -> int:

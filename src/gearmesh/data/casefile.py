@@ -9,7 +9,7 @@ was made (`attributes`). Manifests show whether it is still as it was written
 import functools
 import hashlib
 import itertools
-from collections.abc import Iterator, Mapping
+from collections.abc import Container, Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -166,6 +166,18 @@ def record(response: Response, pair: Pair, problem: Problem | None = None) -> Re
     return columns
 
 
+def without_time_course(columns: Record) -> Record:
+    """Return a record without the variables over samples."""
+    fields = (*SAMPLE_FIELDS, *LOAD_SAMPLE_FIELDS)
+    sampled = {name for field in fields for name in (field.name, field.relative)}
+    return {name: values for name, values in columns.items() if name not in sampled}
+
+
+def fields_in(names: Container[str]) -> list[Field]:
+    """Return the fields of every case that are among the names of variables."""
+    return [field for field in (*FIELDS, *LOAD_FIELDS) if (field.relative or field.name) in names]
+
+
 def absent(field: Field) -> float:
     """Return the value of a field where there is none."""
     if field.kind == "f8":
@@ -220,7 +232,8 @@ def case_digest(pair: Pair, case: Case) -> str:
     samples = pair.samples_per_period if case.time_course else 0
     problem = pair.problem(case.variant, case.nu)
     stated = repr((problem, scales, samples, pair.tolerance))
-    return hashlib.sha256(f"{stated} {_common_digest()}".encode()).hexdigest()
+    held = " with loads" if case.loads else ""
+    return hashlib.sha256(f"{stated}{held} {_common_digest()}".encode()).hexdigest()
 
 
 @functools.cache

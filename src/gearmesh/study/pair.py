@@ -13,6 +13,7 @@ from typing import Any, NamedTuple, Self
 from pydantic import PrivateAttr, model_validator
 
 from gearmesh.model import stiffness
+from gearmesh.model.involute import Involute
 from gearmesh.model.problem import Problem
 from gearmesh.model.variants import Variant
 from gearmesh.study.alternatives import (
@@ -259,16 +260,9 @@ class Pair(Parameters):
 
     @property
     def standard_contact_ratio(self) -> float:
-        """Contact ratio of two standard wheels (addendum m_n) with Z_3 and Z_2 teeth, angle α.
-
-        The path of contact over the base pitch:
-        ε = Σ (√(r_a² − r_b²) − r sin α)/(π m_n cos α).
-        """
-        path, angle = 0.0, self.pressure_angle
-        for teeth in of_wheels(self.teeth):
-            tip_radius, base_radius = teeth / 2 + 1, teeth / 2 * math.cos(angle)
-            path += math.sqrt(tip_radius**2 - base_radius**2) - teeth / 2 * math.sin(angle)
-        return path / (math.pi * math.cos(angle))
+        """Contact ratio of two standard wheels (addendum m_n) with Z_3 and Z_2 teeth, angle α."""
+        wheels = Involute(self.module, of_wheels(self.teeth), self.pressure_angle)
+        return wheels.contact_ratio
 
     def problem(self, variant: Variant, nu: float) -> Problem:
         """State one run in static deflections, 1/Ω_s and static forces.

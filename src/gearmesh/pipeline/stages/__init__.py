@@ -4,7 +4,16 @@ A stage imports within its body what only it needs. A job therefore starts quick
 only if something that it uses changes (`gearmesh.data.provenance.code_digest`).
 """
 
-from gearmesh.pipeline.stages import cases, claims, datasets, figures, identify, mechanisms, report
+from gearmesh.pipeline.stages import (
+    cases,
+    claims,
+    crate,
+    datasets,
+    figures,
+    identify,
+    mechanisms,
+    report,
+)
 
 STAGES = {
     stage.__name__: stage
@@ -12,15 +21,15 @@ STAGES = {
         *(cases.cases, cases.case, datasets.datasets, datasets.thresholds),
         *(figures.fig1, figures.figure, figures.identified_figures, figures.study_figures),
         *(mechanisms.orbits, mechanisms.branches, mechanisms.basins, mechanisms.sweeps),
-        *(mechanisms.lyapunov, mechanisms.special_curves),
+        *(mechanisms.bands, mechanisms.lyapunov, mechanisms.special_curves, mechanisms.why),
         *(claims.printed, claims.ledger, claims.verdict),
         *(
             report.notebook_pages,
             report.explorer,
             report.report,
-            report.study_report,
             report.hashes,
         ),
+        crate.crate,
         *(identify.samples, identify.box, identify.all_samples, identify.identified),
         identify.identification_notebook,
     )

@@ -81,6 +81,15 @@ def sweeps(study: Study, places: Places) -> list[Path]:
     return [places.mechanism("sweeps"), places.mechanism("design_map")]
 
 
+def bands(study: Study, places: Places) -> list[Path]:
+    """Measure the bands of extrema with lubricant damping after 5, 50 and 500 revolutions."""
+    from gearmesh.reproduction.mechanisms import bands, tables
+
+    found = bands.bands(study.pair, _mechanisms(study).variants)
+    tables.write(places.mechanism("bands"), found, study, "bands of extrema")
+    return [places.mechanism("bands")]
+
+
 def lyapunov(study: Study, places: Places) -> list[Path]:
     """Compute the Lyapunov exponents of the conservative variant."""
     from gearmesh.reproduction.mechanisms import exponents, tables
@@ -100,6 +109,21 @@ def special_curves(study: Study, places: Places) -> list[Path]:
     found = curves.curves(study.pair, rows)
     tables.write(places.mechanism("special_curves"), found, study, "curves of special points")
     return [places.mechanism("special_curves")]
+
+
+def why(study: Study, places: Places) -> list[Path]:
+    """Run the notebook that draws what lies behind the curves."""
+    from gearmesh.data.paths import WHY, notebook
+    from gearmesh.pipeline.notebooks import run_notebook
+
+    executed = places.executed_notebook(WHY)
+    parameters = {
+        "configuration": study.path,
+        "datasets": places.branches.parent,
+        "figures": places.figure_files(WHY)[0].parent,
+    }
+    run_notebook(notebook(WHY), executed, parameters, places.scratch)
+    return [*places.why_files, executed]
 
 
 def _mechanisms(study: Study) -> Mechanisms:
