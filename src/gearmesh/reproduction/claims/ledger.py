@@ -60,7 +60,7 @@ class Claim(Section):
     a mapping from the names of several quantities to such targets.
     """
 
-    id: str = Field(pattern=r"^[A-Z][0-9]+(\.[0-9]+)?$", description="P1, F2.1, ...")
+    id: str = Field(pattern=r"^[A-Z][0-9]+(\.[0-9]+[a-z]?)?$", description="P1, F2.1, ...")
     where: str = Field(min_length=1, description="place in the paper")
     figure: Figure = Field(description="whose notebook checks it; 'printed' for bare numbers")
     quote: str | None = Field(None, description="what the paper says, at most one sentence")
