@@ -5,6 +5,7 @@ was changed, or when it was made of something else. The manifests are checked wh
 (`Plan.check`), so neither the times of files nor Snakemake's own records matter.
 """
 
+import getpass
 import hashlib
 import os
 import re
@@ -321,11 +322,20 @@ def load(
             f"the code would come from {provenance.PACKAGE}, not from this folder; "
             "run 'make reproduce', which sets up an environment here"
         )
+    _name_the_user()
     plan = Plan(load_study(str(path)))
     load_settings(layout.SETTINGS)  # a mistake in it, or in the ledger, is reported before all jobs
     if plan.study.claims:
         load_ledger(plan.study.claims)
     return replace(plan, holding=plan.check()) if main else plan
+
+
+def _name_the_user() -> None:
+    """Give a name to a user whom the system does not know; Snakemake cannot run without one."""
+    try:
+        getpass.getuser()
+    except (KeyError, OSError):
+        os.environ["USER"] = str(os.getuid())
 
 
 def prefix(plan: Plan) -> str:
