@@ -49,24 +49,10 @@ wildcard_constraints:
     root=re.escape(os.getcwd()),
 
 
-# Short rules run where Snakemake runs, also on a cluster.
+# Short rules run where Snakemake runs, also on a cluster; each file of rules names its own.
 localrules:
     all,
     data,
-    datasets,
-    figures,
-    fig1,
-    study_figures,
-    identified_figures,
-    printed,
-    ledger,
-    verdict,
-    notebook_pages,
-    report,
-    identify,
-    box,
-    crate,
-    hashes,
 
 
 rule all:
@@ -101,6 +87,10 @@ if PLAN.study.claims:
     include: "workflow/rules/figures.smk"
     include: "workflow/rules/claims.smk"
     include: "workflow/rules/report.smk"
+
+    if PLAN.study.plan.mechanisms:
+
+        include: "workflow/rules/why.smk"
 
 else:
 

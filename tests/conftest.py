@@ -21,6 +21,7 @@ settings.load_profile("gearmesh")
 ROOT = Path(__file__).parents[1]
 
 SLOW = (
+    "browser",
     *("docs", "dynamics", "identification/test_samples", "interface", "reproduction/test_figures"),
     *("solvers/test_continuation", "solvers/test_full", "solvers/test_hard", "solvers/test_peers"),
     *("solvers/test_reduced", "solvers/test_series", "solvers/test_simulation"),

@@ -7,7 +7,7 @@ that SciPy locates, and matrix exponentials.
 
 import itertools
 from dataclasses import dataclass, replace
-from math import copysign, cos, pi, sin, sqrt, tan
+from math import copysign, cos, floor, pi, sin, sqrt, tan
 
 import numpy as np
 from scipy.integrate import solve_ivp
@@ -29,15 +29,61 @@ class Mode:
     inside: float
     run_out_sign: int = 1
     slip_sign: int = 1
+    parted: bool = False
+
+
+class Body:
+    """What eq. (1) takes of one wheel: numbers in y_st, F_st and m_red."""
+
+    def __init__(self, problem: Problem, place: int) -> None:
+        wheel = problem.wheels[place] if problem.wheels else None
+        self.teeth = wheel.teeth if wheel else problem.teeth
+        self.radius = wheel.base_radius if wheel else problem.base_radius
+        # Each of two equal wheels has twice the reduced mass of the pair.
+        self.inertia = wheel.inertia if wheel else 2.0
+        self.mass = wheel.body_mass if wheel else problem.body_mass
+        self.stiffness = wheel.bearing_stiffness if wheel else (problem.bearing_stiffness,) * 2
+        ratios = wheel.bearing_damping_ratio if wheel else (problem.bearing_damping_ratio,) * 2
+        self.damping = [
+            2.0 * d * sqrt(c * self.mass) for d, c in zip(ratios, self.stiffness, strict=True)
+        ]
+        self.omega = problem.nu / self.teeth
+
+
+def kept(function):
+    """Remember what a function of a problem returns, by the identity of the problem."""
+    known = {}
+
+    def remembered(problem):
+        if id(problem) not in known:
+            known[id(problem)] = problem, function(problem)
+        return known[id(problem)][1]
+
+    return remembered
+
+
+@kept
+def bodies(problem: Problem) -> tuple[Body, Body]:
+    return Body(problem, 0), Body(problem, 1)
+
+
+def series_of(harmonics, angle: float) -> float:
+    """Return the sum of (order, cosine, sine) at the angle nu t."""
+    return sum(a * cos(n * angle) + b * sin(n * angle) for n, a, b in harmonics)
+
+
+def backlash(problem: Problem, t: float) -> float:
+    return problem.backlash + series_of(problem.terms.backlash_harmonics, problem.nu * t)
 
 
 def relative_motion(problem: Problem, t: float, x) -> tuple[float, float]:
     """Return y of eq. (3) and its rate in the state `x`, shape (12,)."""
-    e_3, e_2, radius = problem.eccentricity_3, problem.eccentricity_2, problem.base_radius
-    omega = problem.nu / problem.teeth
-    total_3, total_2 = omega * t + x[PHI_3] / radius, omega * t + x[PHI_2] / radius
-    speed_3, speed_2 = omega + x[6 + PHI_3] / radius, omega + x[6 + PHI_2] / radius
-    behind = problem.eccentricity_angle - total_2
+    e_3, e_2 = problem.eccentricity_3, problem.eccentricity_2
+    third, second = bodies(problem)
+    total_3 = third.omega * t + x[PHI_3] / third.radius
+    behind = problem.eccentricity_angle - second.omega * t - x[PHI_2] / second.radius
+    speed_3 = third.omega + x[6 + PHI_3] / third.radius
+    speed_2 = second.omega + x[6 + PHI_2] / second.radius
     y = x[PHI_3] + x[PHI_2] + x[Y_3] - x[Y_2] + e_3 * sin(total_3) - e_2 * sin(behind)
     rate = x[6 + PHI_3] + x[6 + PHI_2] + x[6 + Y_3] - x[6 + Y_2]
     rate += e_3 * speed_3 * cos(total_3) + e_2 * speed_2 * cos(behind)
@@ -50,90 +96,167 @@ def relative_motion(problem: Problem, t: float, x) -> tuple[float, float]:
 
 def bracket(problem: Problem, t: float, x) -> float:
     """Return e_3 Phi_3' sin Phi_3 - e_2 Phi_2' sin(Delta - Phi_2) of eq. (6)."""
-    omega, radius = problem.nu / problem.teeth, problem.base_radius
-    turned_3, turned_2 = omega * t + x[PHI_3] / radius, omega * t + x[PHI_2] / radius
-    first = problem.eccentricity_3 * (omega + x[6 + PHI_3] / radius) * sin(turned_3)
-    second = problem.eccentricity_2 * (omega + x[6 + PHI_2] / radius)
-    return first - second * sin(problem.eccentricity_angle - turned_2)
+    third, second = bodies(problem)
+    turned_3 = third.omega * t + x[PHI_3] / third.radius
+    turned_2 = second.omega * t + x[PHI_2] / second.radius
+    one = problem.eccentricity_3 * (third.omega + x[6 + PHI_3] / third.radius) * sin(turned_3)
+    two = problem.eccentricity_2 * (second.omega + x[6 + PHI_2] / second.radius)
+    return one - two * sin(problem.eccentricity_angle - turned_2)
 
 
-def pairs(problem: Problem, inside: float) -> list[tuple[float, float]]:
-    """Return gamma and the distance behind the pitch point in base pitches of each pair."""
-    place = inside % 1.0
-    half = 0.5 * (problem.contact_ratio - 1.0)
-    if half <= place <= 1.0 - half:
-        return [(copysign(1.0, 0.5 - place), place - 0.5)]
-    leaving = place + 0.5 if place < 0.5 else place - 0.5
-    return [(-0.5, leaving), (0.5, leaving - 1.0)]
+@kept
+def pitch_point(problem: Problem) -> float:
+    """Return how far the path of a pair has run at the pitch point, in base pitches.
+
+    A pair of standard wheels enters on the tip circle of wheel 2 and leaves on that of wheel 3. In
+    modules; on the mesh line no point beyond the base circles is reached.
+    """
+    z_3, z_2 = (body.teeth for body in bodies(problem))
+    alpha = problem.pressure_angle
+
+    def to_tip(z, other):
+        tip = sqrt((z / 2 + 1) ** 2 - (z / 2 * cos(alpha)) ** 2) - z / 2 * sin(alpha)
+        return min(tip, other / 2 * sin(alpha))
+
+    before, behind = to_tip(z_2, z_3), to_tip(z_3, z_2)
+    return problem.contact_ratio * before / (before + behind)
+
+
+def pairs(problem: Problem, inside: float) -> list[tuple[float, float, int]]:
+    """Return gamma, the distance behind the pitch point in base pitches, and number of each pair.
+
+    Pair p is at the middle of its path at the phase p + 1/2.
+    """
+    length = problem.contact_ratio
+    found = []
+    for p in range(floor(inside) - 2, floor(inside) + 3):
+        passed = inside - (p + 0.5 - 0.5 * length)
+        if 0.0 <= passed <= length:
+            found.append((passed - pitch_point(problem), p))
+    return [(-copysign(1.0, sigma) / len(found), sigma, p) for sigma, p in found]
+
+
+def tooth_factor(problem: Problem, p: int) -> float:
+    product = 1.0
+    for wheel, tooth, factor in problem.terms.tooth_factors:
+        if p % bodies(problem)[3 - wheel].teeth == tooth:
+            product *= factor
+    return product
 
 
 def stiffness(problem: Problem, t: float, inside: float) -> float:
-    """Return C / C_s, by eq. (4) if it is cut, else by its sum."""
-    high, low, share = problem.stiffness_max, problem.stiffness_min, problem.contact_ratio - 1.0
-    if not problem.stiffness_harmonics:
-        return high if len(pairs(problem, inside)) == 2 else low
-    c = low + (high - low) * share
-    for n in range(1, problem.stiffness_harmonics + 1):
-        c += 2.0 * (high - low) * sin(n * pi * share) / (n * pi) * cos(n * problem.nu * t)
-    return c
+    """Return C / C_s: of the mesh, by eq. (4) if it is cut, else by its sum; or of its pairs."""
+    terms, length = problem.terms, problem.contact_ratio
+    touching = pairs(problem, inside)
+    phase = t / problem.period
+    phase -= round(phase - inside)
+    if terms.tooth_pair_stiffness:
+        values = terms.tooth_pair_stiffness
+        total = 0.0
+        for _, _, p in touching:
+            # The piece of the table is that of `inside`; the place on it is that of t.
+            start = p + 0.5 - 0.5 * length
+            piece = min(int((inside - start) / length * (len(values) - 1)), len(values) - 2)
+            share = (phase - start) / length * (len(values) - 1) - piece
+            at = values[piece] + share * (values[piece + 1] - values[piece])
+            total += at * tooth_factor(problem, p)
+        return total
+    if terms.stiffness_table:
+        for (low, before), (high, after) in itertools.pairwise(terms.stiffness_table):
+            if low <= inside % 1.0 <= high and low < high:
+                within = phase - floor(inside) - low
+                c = before + (after - before) * within / (high - low)
+                break
+    else:
+        high, low, share = problem.stiffness_max, problem.stiffness_min, length - 1.0
+        c = low + (high - low) * share
+        if not problem.stiffness_harmonics and not terms.stiffness_fourier:
+            c = high if len(touching) == 2 else low
+        for n in range(1, problem.stiffness_harmonics + 1):
+            c += 2.0 * (high - low) * sin(n * pi * share) / (n * pi) * cos(n * problem.nu * t)
+        for n, (a, b) in enumerate(terms.stiffness_fourier, start=1):
+            c += a * cos(n * problem.nu * t) + b * sin(n * problem.nu * t)
+    return c * sum(tooth_factor(problem, p) for _, _, p in touching) / len(touching)
 
 
 def elastic(problem: Problem, t: float, y: float, mode: Mode) -> float:
-    """Return C (y H1 + (y + s) H2)."""
-    depth = {NORMAL_MESH: y, CONTACT_LOSS: 0.0, INVERSE_MESH: y + problem.backlash}[mode.regime]
-    return stiffness(problem, t, mode.inside) * depth
+    """Return C (d + c_2 d |d| + c_3 d^3) of the depth d."""
+    if mode.regime == CONTACT_LOSS:
+        return 0.0
+    d = y if mode.regime == NORMAL_MESH else y + backlash(problem, t)
+    softening = problem.terms.restoring_2 * abs(d) * d + problem.terms.restoring_3 * d**3
+    return stiffness(problem, t, mode.inside) * (d + softening)
 
 
-def bearing(problem: Problem, displacement: float, rate: float) -> float:
+def contact_force(problem: Problem, t: float, x, mode: Mode) -> float:
+    """Return elastic and damping force, eqs. (1) and (7), of flanks in contact or of the film."""
+    y, v = relative_motion(problem, t, x)
+    k_1, k_2, k_3 = problem.lubricant if mode.regime == CONTACT_LOSS else problem.material
+    damping = k_1 * v + k_2 * abs(v) * v + k_3 * v**3
+    if mode.regime != CONTACT_LOSS and problem.terms.damping_power:
+        damping *= stiffness(problem, t, mode.inside) ** problem.terms.damping_power
+    return elastic(problem, t, y, mode) + damping
+
+
+def bearing(problem: Problem, i: int, x) -> float:
     """Return the force of a bearing on its body."""
-    c, m = problem.bearing_stiffness, problem.body_mass
-    return -c * displacement - 2.0 * problem.bearing_damping_ratio * sqrt(c * m) * rate
+    body, across = bodies(problem)[i % 2], i // 2 - 1
+    return -body.stiffness[across] * x[i] - body.damping[across] * x[6 + i]
 
 
 def holding_force(problem: Problem, x) -> float:
     """Return the F_T with which z_3'' = z_2''."""
-    return -0.5 * bearing(problem, x[Z_3] - x[Z_2], x[6 + Z_3] - x[6 + Z_2])
+    m_3, m_2 = (body.mass for body in bodies(problem))
+    difference = bearing(problem, Z_2, x) / m_2 - bearing(problem, Z_3, x) / m_3
+    return difference / (1.0 / m_3 + 1.0 / m_2)
 
 
 def rates(problem: Problem, t: float, x, mode: Mode) -> list[float]:
     """Return the derivative of the state, eq. (1)."""
-    y, v = relative_motion(problem, t, x)
-    force = elastic(problem, t, y, mode)
-    k_1, k_2, k_3 = problem.lubricant if mode.regime == CONTACT_LOSS else problem.material
-    normal = force + k_1 * v + k_2 * abs(v) * v + k_3 * v**3
+    y, _ = relative_motion(problem, t, x)
+    force = 0.0 if mode.parted else elastic(problem, t, y, mode)
+    normal = 0.0 if mode.parted else contact_force(problem, t, x, mode)
     signs = mode.run_out_sign * mode.slip_sign
+    third, second = bodies(problem)
     moved = t / problem.period - mode.inside
     moved -= round(moved)
     f_t = moment_3 = moment_2 = 0.0
-    for gamma, sigma in pairs(problem, mode.inside):
+    touching = pairs(problem, mode.inside)
+    for gamma, sigma, _ in touching:
         pair = -problem.friction_coefficient * force * gamma * signs
         if mode.slip_sign == 0:
-            pair = holding_force(problem, x)
-        shift = 2.0 * pi / problem.teeth * (sigma + moved)
+            pair = holding_force(problem, x) / len(touching)
         f_t += pair
-        moment_3 -= (tan(problem.pressure_angle) + shift) * pair
-        moment_2 -= (tan(problem.pressure_angle) - shift) * pair
-    omega, radius = problem.nu / problem.teeth, problem.base_radius
-    lever_3 = 1.0 + problem.eccentricity_3 / radius * cos(omega * t + x[PHI_3] / radius)
-    behind = problem.eccentricity_angle - omega * t - x[PHI_2] / radius
-    lever_2 = 1.0 + problem.eccentricity_2 / radius * cos(behind)
-    supports = [bearing(problem, x[i], x[6 + i]) for i in range(6)]
-    # Each wheel has twice the reduced mass of the pair.
+        middle, shift = tan(problem.pressure_angle), 2.0 * pi * (sigma + moved)
+        moment_3 -= (middle + shift / third.teeth) * pair
+        moment_2 -= (middle - shift / second.teeth) * pair
+    lever_3 = 1.0 + problem.eccentricity_3 / third.radius * cos(
+        third.omega * t + x[PHI_3] / third.radius
+    )
+    behind = problem.eccentricity_angle - second.omega * t - x[PHI_2] / second.radius
+    lever_2 = 1.0 + problem.eccentricity_2 / second.radius * cos(behind)
+    terms = problem.terms
+    load_3 = 1.0 + series_of(terms.torque_harmonics_3, problem.nu * t)
+    load_2 = 1.0 + series_of(terms.torque_harmonics_2, problem.nu * t)
+    load_3 -= terms.torsional_damping[0] * x[6 + PHI_3]
+    load_2 -= terms.torsional_damping[1] * x[6 + PHI_2]
+    supports = [bearing(problem, i, x) if i > 1 else 0.0 for i in range(6)]
     return [
         *x[6:],
-        (1.0 - lever_3 * normal + moment_3) / 2.0,
-        (1.0 - lever_2 * normal + moment_2) / 2.0,
-        (supports[Y_3] - normal) / problem.body_mass,
-        (supports[Y_2] + normal) / problem.body_mass,
-        (supports[Z_3] + f_t) / problem.body_mass,
-        (supports[Z_2] - f_t) / problem.body_mass,
+        (load_3 - lever_3 * normal + moment_3) / third.inertia,
+        (load_2 - lever_2 * normal + moment_2) / second.inertia,
+        (supports[Y_3] - normal) / third.mass,
+        (supports[Y_2] + normal) / second.mass,
+        (supports[Z_3] + f_t) / third.mass,
+        (supports[Z_2] - f_t) / second.mass,
     ]
 
 
 def rest(problem: Problem) -> np.ndarray:
     """Return the state at rest with y = 1, the bearings loaded by F_st."""
     x = np.zeros(12)
-    x[Y_3], x[Y_2] = -1.0 / problem.bearing_stiffness, 1.0 / problem.bearing_stiffness
+    third, second = bodies(problem)
+    x[Y_3], x[Y_2] = -1.0 / third.stiffness[0], 1.0 / second.stiffness[0]
     for _ in range(60):
         x[[PHI_3, PHI_2]] += 0.5 * (1.0 - relative_motion(problem, problem.start_time, x)[0])
     return x
@@ -143,7 +266,8 @@ def rest(problem: Problem) -> np.ndarray:
 class Course:
     """A run: strobes (n_periods + 1, 2) of y and y', extrema (n, 3) of time, y, kind; end state.
 
-    `regimes` and `slips` list (time, new value) of each change; times count from the start.
+    `regimes` and `slips` list (time, new value) of each change; times count from the start. `partings`
+    counts how often the flanks part while they overlap, or touch again.
     """
 
     strobes: np.ndarray
@@ -151,6 +275,7 @@ class Course:
     state: np.ndarray
     regimes: list
     slips: list
+    partings: int = 0
 
 
 def integrate(
@@ -164,21 +289,29 @@ def integrate(
     run = _Run(problem, rtol, problem.period / steps_per_period)
     strobes = [run.relative_motion()]
     if periods is None:
-        periods = problem.revolutions * problem.teeth
+        periods = problem.revolutions * bodies(problem)[0].teeth
     stops = _stops(problem)
     for n in range(periods):
         for low, high in itertools.pairwise(stops):
-            run.mode = replace(run.mode, inside=0.5 * (low + high) + problem.initial_phase)
+            run.mode = replace(run.mode, inside=n + 0.5 * (low + high) + problem.initial_phase)
             run.advance((n + high + problem.initial_phase) * problem.period)
         strobes.append(run.relative_motion())
-    return Course(np.array(strobes), np.array(run.extrema), run.state, run.regimes, run.slips)
+    return Course(
+        np.array(strobes), np.array(run.extrema), run.state, run.regimes, run.slips, run.partings
+    )
 
 
 def _stops(problem: Problem) -> list[float]:
-    half = 0.5 * (problem.contact_ratio - 1.0)
-    places = [half, 0.5, 1.0 - half]
-    inner = {(place - problem.initial_phase) % 1.0 for place in places}
-    return sorted(inner | {0.0, 1.0})
+    """Return the places in <0; 1> where C(t) or gamma(t) jumps or has a kink."""
+    half, terms = 0.5 * (problem.contact_ratio - 1.0), problem.terms
+    begins = 0.5 - 0.5 * problem.contact_ratio
+    points = len(terms.tooth_pair_stiffness)
+    places = [half, begins + pitch_point(problem), 1.0 - half]
+    places += [place for place, _ in terms.stiffness_table]
+    places += [begins + problem.contact_ratio * i / (points - 1) for i in range(points)]
+    inner = sorted({(place - problem.initial_phase) % 1.0 for place in places} | {0.0, 1.0})
+    # Places that differ by rounding are one.
+    return [0.0] + [b for a, b in itertools.pairwise(inner) if b - a > 1e-12]
 
 
 class _Run:
@@ -198,6 +331,7 @@ class _Run:
             self.mode = Mode(NORMAL_MESH, self.time / problem.period)
         self.direction = 0
         self.extrema, self.regimes, self.slips = [], [], []
+        self.partings = 0
 
     def relative_motion(self):
         return relative_motion(self.problem, self.time, self.state)
@@ -205,6 +339,9 @@ class _Run:
     def advance(self, end):
         if self.has_signs:
             self._settle_slip()
+        if self.problem.terms.non_adhesive and self.mode.regime != CONTACT_LOSS:
+            force = contact_force(self.problem, self.time, self.state.tolist(), self.mode)
+            self.mode = replace(self.mode, parted=self.mode.regime * force < 0.0)
         while self.time < end:
             self._settle_direction()
             events = self._events()
@@ -251,16 +388,22 @@ class _Run:
             watch(lambda t, x: motion(t, x)[0], -1, lambda: self._enter(CONTACT_LOSS))
         elif mode.regime == INVERSE_MESH:
             watch(
-                lambda t, x: motion(t, x)[0] + problem.backlash,
+                lambda t, x: motion(t, x)[0] + backlash(problem, t),
                 1,
                 lambda: self._enter(CONTACT_LOSS),
             )
         else:
             watch(lambda t, x: motion(t, x)[0], 1, lambda: self._enter(NORMAL_MESH))
             watch(
-                lambda t, x: motion(t, x)[0] + problem.backlash,
+                lambda t, x: motion(t, x)[0] + backlash(problem, t),
                 -1,
                 lambda: self._enter(INVERSE_MESH),
+            )
+        if problem.terms.non_adhesive and mode.regime != CONTACT_LOSS:
+            watch(
+                lambda t, x: contact_force(problem, t, x.tolist(), mode),
+                mode.regime if mode.parted else -mode.regime,
+                self._part,
             )
         if self.has_signs:
             watch(
@@ -281,7 +424,7 @@ class _Run:
             z[0] == z[1]
             and rates[0] == rates[1]
             and self._available(self.time, self.state) == 0.0
-            and len(pairs(self.problem, self.mode.inside)) == 2
+            and sum(gamma for gamma, _, _ in pairs(self.problem, self.mode.inside)) == 0.0
         )
 
     def _turn(self):
@@ -290,14 +433,18 @@ class _Run:
         self.direction = -self.direction
 
     def _enter(self, regime):
-        self.mode = replace(self.mode, regime=regime)
+        self.mode = replace(self.mode, regime=regime, parted=False)
         self.regimes.append((self.time - self.problem.start_time, regime))
+
+    def _part(self):
+        self.mode = replace(self.mode, parted=not self.mode.parted)
+        self.partings += 1
 
     def _available(self, time, state):
         """F_T at slip sign -1: what friction can hold with, negative where it drives."""
         problem = self.problem
         y, _ = relative_motion(problem, time, state)
-        gamma = sum(gamma for gamma, _ in pairs(problem, self.mode.inside))
+        gamma = sum(gamma for gamma, _, _ in pairs(problem, self.mode.inside))
         force = elastic(problem, time, y, self.mode)
         return problem.friction_coefficient * force * gamma * self.mode.run_out_sign
 
@@ -310,7 +457,13 @@ class _Run:
             self.mode = replace(self.mode, slip_sign=slip)
             self.slips.append((self.time - self.problem.start_time, slip))
 
+    def _join(self):
+        """Flanks that stick have one velocity; rounding leaves two."""
+        if self.mode.slip_sign == 0:
+            self.state[[6 + Z_3, 6 + Z_2]] = self.state[[6 + Z_3, 6 + Z_2]].mean()
+
     def _release(self):
+        self._join()
         needed = holding_force(self.problem, self.state)
         self._set_slip(1 if needed <= 0.0 else -1)
 
@@ -323,6 +476,7 @@ class _Run:
         self._settle_slip()
 
     def _settle_slip(self):
+        self._join()
         if self.state[6 + Z_3] != self.state[6 + Z_2]:
             return
         holds = self._margin(self.time, self.state) >= 0.0

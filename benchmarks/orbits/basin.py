@@ -1,20 +1,28 @@
 """Basins of b-both at nu_s = 0.75, where two orbits are stable, by all methods."""
 
 import time
-from dataclasses import dataclass, replace
+from collections.abc import Callable
+from dataclasses import dataclass
 
 import numpy as np
 
 import gearmesh as gm
 from benchmarks.orbits import settling
-from gearmesh.dynamics.attractors import Basins, basins
+from gearmesh.dynamics.attraction.basins import Basins, basins, initial_states
+from gearmesh.dynamics.attraction.regions import region_of
 from gearmesh.model.problem import Problem
 from gearmesh.model.variants import variant
 
 VARIANT, NU, SIDE = "b-both", 0.75, 512
 HEIGHTS, RATES = np.linspace(-3.0, 4.0, SIDE), np.linspace(-2.5, 2.5, SIDE)
-N_HEYOKA, N_SCIPY = 512, 2
+N_HEYOKA, N_SCIPY = 512, 4
 """Starts of the slow methods, drawn at random from the grid."""
+
+NEAR = 1e-3
+"""Distance from an orbit, in y_st, at which a run counts as arrived."""
+
+Reached = Callable[[np.ndarray], np.ndarray]
+"""From states, shape (n, 4), to the orbits that they are known to reach, -1 if not known yet."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -34,62 +42,70 @@ class Found:
     differ: int
 
 
-def problem() -> Problem:
-    """Return the problem; its initial state does not matter."""
-    return gm.paper().problem(variant(VARIANT), NU)
-
-
 def ours() -> tuple[Found, Basins]:
-    """Find all basins."""
+    """Find all basins; the time counts the search for the orbits too."""
     start = time.process_time()
-    found = basins(problem(), HEIGHTS, RATES)
+    found = basins(_problem(), HEIGHTS, RATES)
     spent = time.process_time() - start
     return Found(spent / SIDE**2, SIDE**2, 0), found
 
 
 def with_heyoka(known: Basins, seed: int) -> Found:
-    """Follow a part of the starts in batches."""
-    case, (states, labels), points = problem(), _drawn(known, seed, N_HEYOKA), _points(known)
+    """Follow a part of the starts in batches until they are near an orbit."""
+    return _followed(settling.in_batches, N_HEYOKA, known, seed, _near(known))
 
-    def arrived(_, after):
-        return settling.nearest(after, points)[1] < settling.NEAR
 
-    start = time.process_time()
-    cases = [replace(case)] * len(states)
-    ends = settling.in_batches(cases, states, settling.TOLERANCE, arrived)
-    spent = time.process_time() - start
-    return _compared(spent, ends, labels, points)
+def with_heyoka_and_regions(known: Basins, seed: int) -> Found:
+    """Follow them until they are in the trapping regions that `gearmesh` uses."""
+    return _followed(settling.in_batches, N_HEYOKA, known, seed, _in_regions(known))
 
 
 def with_scipy(known: Basins, seed: int) -> Found:
-    """Follow a few starts one by one."""
-    (states, labels), points = _drawn(known, seed, N_SCIPY), _points(known)
-    start = time.process_time()
-    ends = settling.one_by_one(problem(), states, points)
-    spent = time.process_time() - start
-    return _compared(spent, ends, labels, points)
+    """Follow a few starts one by one until they are near an orbit."""
+    return _followed(settling.one_by_one, N_SCIPY, known, seed, _near(known))
 
 
-def _points(known: Basins) -> list[np.ndarray]:
-    return [attractor.orbit.state for attractor in known.attractors]
-
-
-def _drawn(known: Basins, seed: int, count: int) -> tuple[np.ndarray, np.ndarray]:
-    """Return states and labels of starts drawn from the grid."""
+def _followed(follow, count: int, known: Basins, seed: int, reached: Reached) -> Found:
     drawn = np.random.default_rng(seed).choice(SIDE**2, count, replace=False)
-    i, j = np.unravel_index(drawn, (SIDE, SIDE))
-    rest = -2.0 / problem().bearing_stiffness
-    fixed = np.full(count, rest), np.zeros(count)
-    return np.column_stack([HEIGHTS[i], RATES[j], *fixed]), known.labels[0, i, j]
+    states = initial_states(_problem(), HEIGHTS, RATES)[drawn]
+    problems = [_problem()] * count
+    start = time.process_time()
+    ends = follow(problems, states, settling.TOLERANCE, lambda _, after: reached(after) >= 0)
+    spent = time.process_time() - start
+    differ = reached(ends) != known.labels.ravel()[drawn]
+    return Found(spent / count, count, int(differ.sum()))
 
 
-def _compared(spent: float, ends: np.ndarray, labels: np.ndarray, points) -> Found:
-    reached, away = settling.nearest(ends, points)
-    differ = (reached != labels) | (away > settling.NEAR)
-    return Found(spent / len(ends), len(ends), int(differ.sum()))
+def _near(known: Basins) -> Reached:
+    """Return the function that tells which orbit states are near."""
+    points = [attractor.orbit.state for attractor in known.attractors]
+
+    def reached(states: np.ndarray) -> np.ndarray:
+        away = np.array([np.abs(states - point).max(axis=1) for point in points])
+        return np.where(away.min(axis=0) < NEAR, away.argmin(axis=0), -1)
+
+    return reached
+
+
+def _in_regions(known: Basins) -> Reached:
+    """Return the function that tells in which orbit's trapping region states are."""
+    phase = _problem().initial_phase
+    regions = [region_of(attractor.orbit, phase) for attractor in known.attractors]
+
+    def reached(states: np.ndarray) -> np.ndarray:
+        inside = np.array([region.holds(states) for region in regions])
+        return np.where(inside.any(axis=0), inside.argmax(axis=0), -1)
+
+    return reached
+
+
+def _problem() -> Problem:
+    """Return the problem; its initial state does not matter."""
+    return gm.paper().problem(variant(VARIANT), NU)
 
 
 METHODS = {
     "heyoka in batches, until near an orbit": with_heyoka,
+    "heyoka in batches, with gearmesh's regions": with_heyoka_and_regions,
     "SciPy DOP853, until near an orbit": with_scipy,
 }

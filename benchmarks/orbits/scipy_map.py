@@ -15,8 +15,8 @@ STEP = 1e-6
 class Stroboscope:
     """The map of one problem."""
 
-    def __init__(self, problem: Problem):
-        self.problem = problem
+    def __init__(self, problem: Problem, tolerance: float = TOLERANCE):
+        self.problem, self.tolerance = problem, tolerance
         self.pieces = piece_table(pieces_of(problem))
 
     def __call__(self, state: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -27,7 +27,7 @@ class Stroboscope:
 
     def move(self, state: np.ndarray) -> np.ndarray:
         """Return the state one mesh period later."""
-        run, length = Run(self.problem, TOLERANCE), self.problem.period
+        run, length = Run(self.problem, self.tolerance), self.problem.period
         run.state = np.array(state)
         run.regime = 1 if state[0] >= 0 else (-1 if state[0] <= -self.problem.backlash else 0)
         for piece in self.pieces:

@@ -1,7 +1,4 @@
-"""Brute force: runs are followed until they repeat, or until they come near a known orbit.
-
-heyoka moves as many runs side by side as a vector holds. A batch ends when all of its runs have.
-"""
+"""Brute force: runs are followed until they repeat, or until they are known to reach an orbit."""
 
 from collections.abc import Callable, Sequence
 
@@ -17,29 +14,20 @@ REPEATS = 1e-11
 """Change over a mesh period below which a motion counts as periodic. Its distance from the orbit is
 some hundred times that, because motions of the bodies decay by less than a hundredth a period."""
 
-NEAR = 1e-3
-"""Distance from an orbit, in y_st, at which a run counts as arrived."""
-
 MOST = 10_000
 """Mesh periods of a run that never ends."""
 
+Ended = Callable[[np.ndarray, np.ndarray], np.ndarray]
+"""From states before and after a mesh period, shape (n, 4), to whether the runs are over."""
+
 
 def in_batches(
-    problems: Sequence[Problem],
-    states: np.ndarray,
-    tolerance: float,
-    ended: Callable[[np.ndarray, np.ndarray], np.ndarray],
+    problems: Sequence[Problem], states: np.ndarray, tolerance: float, ended: Ended
 ) -> np.ndarray:
-    """Return the ends of runs that are followed until `ended`.
+    """Return the ends of runs that heyoka follows, as many side by side as a vector holds.
 
-    Parameters
-    ----------
-    problems : sequence of Problem
-        With the same damping terms and contact ratio.
-    states : ndarray, shape (n, 4)
-    tolerance : float
-    ended : callable
-        From states before and after a mesh period, shape (m, 4), to booleans.
+    A batch ends when all of its runs are over. The runs have the same damping terms and switch at
+    the same phases.
     """
     found = []
     for first in range(0, len(problems), LANES):
@@ -51,7 +39,9 @@ def in_batches(
     return np.concatenate(found)
 
 
-def _batch(problems, states, tolerance, ended):
+def _batch(
+    problems: list[Problem], states: np.ndarray, tolerance: float, ended: Ended
+) -> np.ndarray:
     periods = np.array([problem.period for problem in problems])
     scale = np.column_stack([np.ones(LANES), periods, np.ones(LANES), periods])
     solver, cut = integrator(terms(problems[0]), tolerance), pieces_of(problems[0])
@@ -65,24 +55,21 @@ def _batch(problems, states, tolerance, ended):
     return after
 
 
+def one_by_one(
+    problems: Sequence[Problem], states: np.ndarray, tolerance: float, ended: Ended
+) -> np.ndarray:
+    """Return the ends of runs that SciPy follows."""
+    ends = []
+    for problem, state in zip(problems, states[:, None], strict=True):
+        stroboscope = scipy_map.Stroboscope(problem, tolerance)
+        for _ in range(MOST):
+            before, state = state, stroboscope.move(state[0])[None]
+            if ended(before, state).all():
+                break
+        ends.append(state[0])
+    return np.array(ends)
+
+
 def repeats(before: np.ndarray, after: np.ndarray) -> np.ndarray:
     """Return which motions are periodic."""
-    return np.abs(after - before).max(axis=-1) < REPEATS
-
-
-def nearest(states: np.ndarray, points: Sequence[np.ndarray]) -> tuple[np.ndarray, np.ndarray]:
-    """Return the nearest of several points to each state, and its distance."""
-    away = np.array([np.abs(states - point).max(axis=-1) for point in points])
-    return away.argmin(axis=0), away.min(axis=0)
-
-
-def one_by_one(problem: Problem, states: np.ndarray, points: Sequence[np.ndarray]) -> np.ndarray:
-    """Return the ends of runs with SciPy that are followed until they are near a point."""
-    stroboscope, ends = scipy_map.Stroboscope(problem), []
-    for state in states:
-        for _ in range(MOST):
-            state = stroboscope.move(state)
-            if nearest(state, points)[1] < NEAR:
-                break
-        ends.append(state)
-    return np.array(ends)
+    return np.abs(after - before).max(axis=1) < REPEATS

@@ -1,6 +1,7 @@
 """The results as a table for the terminal."""
 
 OURS = "gearmesh"
+"""`follow` with its special points, and `basins`."""
 
 
 def render(results: dict) -> str:

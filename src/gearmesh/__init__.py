@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from gearmesh.errors import InputError, NoOrbit
-    from gearmesh.interface.attractors import attractors, basins, lyapunov_spectrum
+    from gearmesh.interface.attractors import attractors, basins
     from gearmesh.interface.branches import (
         Branch,
         SpecialCurve,
@@ -20,8 +20,11 @@ if TYPE_CHECKING:
         follow,
         follow_special,
     )
+    from gearmesh.interface.geometry import Geometry, geometry
+    from gearmesh.interface.lyapunov import lyapunov_spectrum
     from gearmesh.interface.orbits import Orbit, find_orbit
     from gearmesh.interface.runs import simulate, sweep
+    from gearmesh.interface.spectra import campbell, spectrum
     from gearmesh.interface.statements import paper
     from gearmesh.study.loading import load
     from gearmesh.study.pair import Pair
@@ -30,6 +33,7 @@ __version__ = "0.2.0"
 
 __all__ = [
     "Branch",
+    "Geometry",
     "InputError",
     "NoOrbit",
     "Orbit",
@@ -38,25 +42,31 @@ __all__ = [
     "SpecialPoint",
     "attractors",
     "basins",
+    "campbell",
     "find_orbit",
     "follow",
     "follow_special",
+    "geometry",
     "load",
     "lyapunov_spectrum",
     "paper",
     "simulate",
+    "spectrum",
     "sweep",
 ]
 
 _MODULES = {
     "gearmesh.errors": ("InputError", "NoOrbit"),
-    "gearmesh.interface.attractors": ("attractors", "basins", "lyapunov_spectrum"),
+    "gearmesh.interface.attractors": ("attractors", "basins"),
     "gearmesh.interface.branches": (
         *("Branch", "SpecialCurve", "SpecialPoint"),
         *("follow", "follow_special"),
     ),
+    "gearmesh.interface.geometry": ("Geometry", "geometry"),
+    "gearmesh.interface.lyapunov": ("lyapunov_spectrum",),
     "gearmesh.interface.orbits": ("Orbit", "find_orbit"),
     "gearmesh.interface.runs": ("simulate", "sweep"),
+    "gearmesh.interface.spectra": ("campbell", "spectrum"),
     "gearmesh.interface.statements": ("paper",),
     "gearmesh.study.loading": ("load",),
     "gearmesh.study.pair": ("Pair",),

@@ -28,13 +28,14 @@ SHOWN = ("text", "yaml")
 """Kinds that are only read: files, output, and code that belongs into a file."""
 
 PAPER = "results/paper"
+SMOKE = "config/smoke.yaml"
 
 ELSEWHERE = {
     "make reproduce": "tests/workflow/test_workflow.py runs the same targets on a small study",
     "make test": "runs this test",
     "make lint": ".ci/run runs it",
     "make docs": ".ci/run runs it",
-    "make identify": "tests/identification/test_identification_runs.py runs a small design",
+    "make identify": "tests/identification/test_samples.py runs a small design",
     ".venv/bin/pre-commit install": "changes the hooks of the repository that it runs in",
     ".venv/bin/snakemake --profile profiles/slurm": "tests/workflow/test_slurm.py runs it",
     "snakemake --profile profiles/slurm": "tests/workflow/test_slurm.py runs it",
@@ -110,7 +111,10 @@ def executed(page: str) -> list[str]:
 def test_what_a_page_prints_works_as_printed(
     page: str, tmp_path: Path, request: pytest.FixtureRequest
 ) -> None:
-    project = Project.create(tmp_path / "project", "config/paper.yaml")
+    if any(SMOKE in code for code in executed(page)):  # there already, and found up to date
+        project = request.getfixturevalue("smoke").copy(tmp_path / "project")
+    else:
+        project = Project.create(tmp_path / "project", "config/paper.yaml")
     project.path(".venv").symlink_to(sys.prefix)
     if any(PAPER in code for code in executed(page)):
         smoke = request.getfixturevalue("smoke")  # the paper's study, only smaller
@@ -144,3 +148,11 @@ def test_what_runs_elsewhere_is_printed_somewhere() -> None:
         for command in commands(block.code)
     }
     assert [command for command in ELSEWHERE if command not in printed] == []
+
+
+def test_what_runs_elsewhere_names_a_test_or_a_step_that_is_there() -> None:
+    named = {name for how in ELSEWHERE.values() for name in re.findall(r"[\w.]+/[\w/.]+\w", how)}
+    assert [name for name in named if not (ROOT / name).exists()] == []
+    steps = (ROOT / ".ci" / "run").read_text(encoding="utf-8")
+    run_there = [command for command, how in ELSEWHERE.items() if ".ci/run" in how]
+    assert [command for command in run_there if command not in steps] == []

@@ -8,14 +8,12 @@ from numba import njit
 from problems import problem
 from scipy.integrate import solve_ivp
 
-from gearmesh.dynamics.starts import coordinates, linear_orbit
+from benchmarks.orbits.known import case_of
+from gearmesh.dynamics.starts import coordinates
 from gearmesh.model.contact import CONTACT_LOSS
 from gearmesh.solvers.reduced import variational
 from gearmesh.solvers.reduced.period_map import passage
 from gearmesh.solvers.simulation import simulate
-
-FAR_BODIES = {"body_mass": 1e30, "bearing_stiffness": 1e30, "friction_coefficient": 0.0}
-"""Bodies that stand still: the mesh alone moves."""
 
 REST = (1.0, 0.0, -2.0, 0.0)
 """Static equilibrium at the bearing stiffness 1."""
@@ -33,22 +31,6 @@ def test_ends_where_the_sweep_ends():
         moved = passage(case, REST, case.revolutions * case.teeth)
         assert moved.status == "complete"
         np.testing.assert_allclose(moved.end, coordinates(end), atol=1e-10, rtol=0)
-
-
-@pytest.mark.parametrize("damping", [0.0, 0.06])
-@pytest.mark.parametrize("nu", [0.62, 0.66, 1.15])
-def test_trace_in_contact_is_that_of_hill(nu, damping):
-    case = problem(nu, material=(2.0 * damping, 0.0, 0.0), **FAR_BODIES)
-    moved = passage(case, linear_orbit(case))
-    fast = np.sqrt(case.stiffness_max - damping**2)
-    slow = np.sqrt(case.stiffness_min - damping**2)
-    a = fast * (case.contact_ratio - 1.0) * case.period
-    b = slow * (2.0 - case.contact_ratio) * case.period
-    trace = 2.0 * np.cos(a) * np.cos(b)
-    trace -= (fast / slow + slow / fast) * np.sin(a) * np.sin(b)
-    assert set(moved.events[:, variational.REGIME]) == {1.0}
-    found = np.trace(moved.jacobian[:2, :2])
-    assert found == pytest.approx(trace * np.exp(-damping * case.period), abs=1e-12)
 
 
 @pytest.mark.parametrize("name", ["b-both", "b-material", "b-lubricant"])
@@ -120,8 +102,9 @@ def test_first_root_misses_no_close_pair():
 
 
 def test_saltation_gives_the_multiplier_of_the_switched_oscillator():
-    """The unit circle of the COCO demo `piecewise`, at alpha = beta = 1, gamma = 1.5."""
-    alpha, beta, gamma = 1.0, 1.0, 1.5
+    """The unit circle of `switched.yaml`; its flow is SciPy's."""
+    case = case_of("switched")
+    alpha, beta, gamma = (case.parameters[name] for name in ("alpha", "beta", "gamma"))
 
     def left(_, x):
         r = np.hypot(*x)
@@ -166,7 +149,7 @@ def test_saltation_gives_the_multiplier_of_the_switched_oscillator():
     monodromy = enter_right @ flow(left, np.pi, top) @ enter_left
     monodromy = monodromy @ flow(right, np.pi / gamma, bottom)
     multipliers = np.sort(np.abs(np.linalg.eigvals(monodromy)))
-    assert multipliers == pytest.approx([0.005321565, 1.0], abs=1e-9)
+    assert multipliers == pytest.approx([case.exact["multiplier"], 1.0], abs=1e-10)
 
 
 def test_a_motion_that_runs_away_says_so():

@@ -57,7 +57,7 @@ def test_arms_are_those_of_the_geometry(phase):
     for _, sigma in pairs_in_contact(phase, EPSILON):
         at = np.array([2.0 * math.pi / TEETH * sigma, 0.0])
         centre = np.array([math.tan(ALPHA), 1.0])
-        arm_3, arm_2 = arms(sigma, ALPHA, TEETH)
+        arm_3, arm_2 = arms(sigma, ALPHA, TEETH, TEETH)
         for middle, expected in ((-centre, (1.0, -arm_3)), (centre, (-1.0, arm_2))):
             turn = 1e-6
             to, fro = (rotation(angle) @ (at - middle) + middle for angle in (turn, -turn))
@@ -73,7 +73,7 @@ def rotation(angle):
 def test_friction_dissipates_in_normal_mesh_and_drives_in_inverse_mesh(phase, elastic):
     """Steady rotation: wheel 3 turns by +1 and wheel 2 by -1, so the flanks slide along z."""
     for gamma, sigma in pairs_in_contact(phase, EPSILON):
-        arm_3, arm_2 = arms(sigma, ALPHA, TEETH)
+        arm_3, arm_2 = arms(sigma, ALPHA, TEETH, TEETH)
         sliding = -arm_3 + arm_2
         if abs(sliding) < 1e-12:
             continue
@@ -86,7 +86,7 @@ def test_friction_dissipates_in_normal_mesh_and_drives_in_inverse_mesh(phase, el
 def test_moments_cancel_in_the_sum_and_not_on_each_wheel_in_double_contact(phase):
     force = moment_3 = moment_2 = 0.0
     for gamma, sigma in pairs_in_contact(phase, EPSILON):
-        arm_3, arm_2 = arms(sigma, ALPHA, TEETH)
+        arm_3, arm_2 = arms(sigma, ALPHA, TEETH, TEETH)
         pair_force = friction_force(1.0, 0.1, gamma, 1, 1)
         force += pair_force
         moment_3 -= arm_3 * pair_force

@@ -9,7 +9,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from problems import problem
 
-from gearmesh.model import motion
+from gearmesh.model import motion, stiffness
 from gearmesh.model.contact import (
     CONTACT_LOSS,
     INVERSE_MESH,
@@ -160,7 +160,7 @@ def test_stiffness_switches_at_the_ends_of_double_contact():
 def test_truncated_series_replaces_the_wave():
     smooth = replace(PLAIN, stiffness_harmonics=3)
     a = accelerations(smooth, at_phase(smooth, 0.3), pressed(1.0), STILL)
-    expected = motion.stiffness.fourier(0.3, 1.569, PLAIN.stiffness_max, PLAIN.stiffness_min, 3)
+    expected = stiffness.fourier(0.3, 1.569, PLAIN.stiffness_max, PLAIN.stiffness_min, 3)
     assert a[ROTATION_3] + a[ROTATION_2] == pytest.approx(1.0 - expected)
 
 

@@ -6,7 +6,6 @@ not blow up what is below any solver's reach: the runs here are none of those, a
 tested too.
 """
 
-import sys
 from dataclasses import replace
 from itertools import pairwise
 from pathlib import Path
@@ -21,13 +20,11 @@ pytest.importorskip(
     "heyoka", reason="heyoka is not installed: pip install -r requirements-bench.in"
 )
 
+from benchmarks.outcome import deviation
+from benchmarks.peers import OURS, PEERS
+from benchmarks.reference import references
+
 ROOT = Path(__file__).parents[2]
-sys.path.insert(0, str(ROOT))  # benchmarks is a folder of the project, not of the package
-
-from benchmarks.outcome import deviation  # noqa: E402
-from benchmarks.peers import OURS, PEERS  # noqa: E402
-from benchmarks.reference import references  # noqa: E402
-
 AGREEMENT = 1e-8
 TIGHT = 1e-13
 

@@ -13,6 +13,9 @@ from gearmesh.model.friction import friction_force
 from gearmesh.model.motion import Mode, accelerations, relative_motion
 from gearmesh.solvers.full import runs as general
 from gearmesh.solvers.full import series as full_series
+from gearmesh.solvers.full.coordinates import kinds_of_period
+from gearmesh.solvers.full.roots import MAX_DEGREE
+from gearmesh.solvers.full.tape import Y, tape
 from gearmesh.solvers.reduced import taylor
 from gearmesh.solvers.reduced import workspace as rows
 from gearmesh.solvers.simulation import simulate
@@ -89,10 +92,9 @@ def stated_series(case, time, state, mode):
 
 
 @njit
-def compiled_series(cases, segment, modes, state, series):
-    nothing = np.zeros((0, 2))
-    full_series.begin(cases[0], modes[0], state, nothing, nothing, series)
-    full_series.expand(cases[0], segment[0], modes[0], False, series, cases[0].order)
+def compiled_series(cases, modes, state, tape, series):
+    full_series.begin(cases[0], modes[0], state, tape, 0, series)
+    full_series.expand(cases[0], modes[0], tape, 0, series, cases[0].order)
 
 
 RUN_OUT = problem(
@@ -114,10 +116,13 @@ RUN_OUT = problem(
     [(0, 1), (0, -1), (1, 1), (1, -1), (1, 0), (2, 1), (2, -1), (2, 0)],
 )
 def test_the_full_recurrence_is_the_statement(regime, part, slip_sign):
-    cases = general._case(RUN_OUT, 1e-10, ORDER)
+    cases = general._case(RUN_OUT, 1e-10, ORDER, 6)
+    phases, _ = kinds_of_period(RUN_OUT)
+    recorded = tape(RUN_OUT, phases)
     segments = general._segments(RUN_OUT)
     start = 0.0 if part == 0 else segments["end"][part - 1]
     modes = np.zeros(1, full_series.MODE)
+    modes["segment"] = part
     modes["period"], modes["time"] = 3, 0.5 * (start + segments["end"][part])
     modes["regime"], modes["run_out_sign"], modes["slip_sign"] = regime, -1, slip_sign
     time = 3 * RUN_OUT.period + modes["time"][0]
@@ -126,11 +131,12 @@ def test_the_full_recurrence_is_the_statement(regime, part, slip_sign):
         state[6 + 4] = state[6 + 5]
     _, rate = relative_motion(RUN_OUT, time, state[:6], state[6:])
     modes["direction"] = np.sign(rate)
-    series = np.zeros(full_series.SERIES_SHAPE)
-    compiled_series(cases, segments[part : part + 1], modes, state, series)
+    series = np.zeros((recorded.height, MAX_DEGREE + 1))
+    compiled_series(cases, modes, state, tuple(recorded), series)
     mode = Mode(regime, time / RUN_OUT.period, -1, slip_sign)
     expected = stated_series(RUN_OUT, time, state, mode)
-    np.testing.assert_allclose(series[:7, : ORDER + 1], expected, rtol=1e-11, atol=1e-12)
+    found = series[[*range(6), Y], : ORDER + 1]
+    np.testing.assert_allclose(found, expected, rtol=1e-11, atol=1e-12)
 
 
 class Number(float):

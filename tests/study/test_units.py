@@ -4,7 +4,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from gearmesh.study.units import parse
+from gearmesh.study.units import COMMON, factor_of, parse
 
 
 @pytest.mark.parametrize(
@@ -80,3 +80,8 @@ def test_any_text_is_a_number_or_a_value_error(text):
             assert isinstance(parse(text, unit), float)
         except ValueError as error:
             assert "expected:" in str(error)
+
+
+@pytest.mark.parametrize(("given", "unit"), COMMON)
+def test_the_common_factors_are_those_of_pint(given, unit):
+    assert COMMON[given, unit] == factor_of(given, unit)

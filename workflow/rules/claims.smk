@@ -1,4 +1,10 @@
 # Collect all checks, and compare them with the ledger.
+localrules:
+    printed,
+    ledger,
+    verdict,
+
+
 rule printed:
     input:
         again=PLAN.again("printed"),
@@ -17,6 +23,7 @@ rule printed:
 rule ledger:
     input:
         checks=expand(PLACES.check("{name}"), name=paths.CHECKED),
+        orbits=([PLACES.special_points, PLACES.thresholds] if PLAN.study.plan.mechanisms else []),
         again=PLAN.again("ledger"),
     output:
         report(PLACES.ledger, caption="../report/claims.rst", category="Claims"),
@@ -26,7 +33,7 @@ rule ledger:
     params:
         made_of=PLAN.made_of("ledger"),
     shell:
-        'python -m gearmesh.pipeline ledger "$STUDY" {params.made_of} --read {input.checks}'
+        'python -m gearmesh.pipeline ledger "$STUDY" {params.made_of} --read {input.checks} {input.orbits}'
         " 2>&1 | tee {log}"
 
 

@@ -1,10 +1,18 @@
 # The explorer: a page beside the report with the numbers of the study, and a solver.
+localrules:
+    explorer,
+
+
 rule explorer:
     input:
-        read=[PLACES.resonance, PLACES.bifurcation],
+        read=[
+            PLACES.resonance,
+            PLACES.bifurcation,
+            [PLACES.branches, PLACES.special_points] if PLAN.study.plan.mechanisms else [],
+        ],
         again=PLAN.again("explorer"),
     output:
-        PLACES.explorer,
+        report(PLACES.explorer, caption="../report/explorer.rst", category="Report"),
     log:
         PLACES.log("explorer"),
     benchmark:

@@ -1,4 +1,10 @@
 # The report: its page, the notebooks as pages beside it, and two figures of its own.
+localrules:
+    identified_figures,
+    notebook_pages,
+    report,
+
+
 rule identified_figures:
     input:
         again=PLAN.again("identified_figures"),
@@ -16,12 +22,15 @@ rule identified_figures:
         'python -m gearmesh.pipeline identified_figures "$STUDY" {params.made_of} 2>&1 | tee {log}'
 
 
+SHOWN = [*paths.NOTEBOOK_NAMES, *([paths.WHY] if PLAN.study.plan.mechanisms else [])]
+
+
 rule notebook_pages:
     input:
-        notebooks=expand(PLACES.executed_notebook("{name}"), name=paths.NOTEBOOK_NAMES),
+        notebooks=expand(PLACES.executed_notebook("{name}"), name=SHOWN),
         again=PLAN.again("notebook_pages"),
     output:
-        expand(PLACES.notebook_page("{name}"), name=paths.NOTEBOOK_NAMES),
+        expand(PLACES.notebook_page("{name}"), name=SHOWN),
     log:
         PLACES.log("notebook_pages"),
     benchmark:
@@ -40,6 +49,7 @@ rule report:
             rules.figures.input,
             rules.identified_figures.output,
             rules.notebook_pages.output,
+            PLACES.of_why if PLAN.study.plan.mechanisms else [],
         ],
         beside=rules.explorer.output,
         again=PLAN.again("report"),

@@ -1,4 +1,10 @@
 # A study of one's own, without a ledger of claims: its figures and its report.
+localrules:
+    study_figures,
+    figures,
+    report,
+
+
 rule study_figures:
     input:
         read=[PLACES.resonance, PLACES.bifurcation],
@@ -27,15 +33,15 @@ rule report:
     input:
         read=[PLACES.resonance, rules.figures.input],
         beside=rules.explorer.output,
-        again=PLAN.again("study_report"),
+        again=PLAN.again("report"),
     output:
         PLACES.report,
     log:
-        PLACES.log("study_report"),
+        PLACES.log("report"),
     benchmark:
-        PLACES.benchmark("study_report")
+        PLACES.benchmark("report")
     params:
-        made_of=PLAN.made_of("study_report"),
+        made_of=PLAN.made_of("report"),
     shell:
-        'python -m gearmesh.pipeline study_report "$STUDY" {params.made_of} --read {input.read}'
+        'python -m gearmesh.pipeline report "$STUDY" {params.made_of} --read {input.read}'
         " 2>&1 | tee {log}"

@@ -136,6 +136,11 @@ def _add_runs(commands: "argparse._SubParsersAction[_Parser]", pair: _Parser) ->
         choices=("up", "down"),
         help="start each run from the end of the run before it",
     )
+    sweep.add_argument(
+        "--loads",
+        action="store_true",
+        help="measure tooth forces, dynamic factors, transmission errors and bearing forces, too",
+    )
     sweep.set_defaults(run=_sweep)
 
 
@@ -182,7 +187,7 @@ def _add_orbits(commands: "argparse._SubParsersAction[_Parser]", pair: _Parser) 
 
 def _add_pictures(commands: "argparse._SubParsersAction[_Parser]") -> None:
     plot = commands.add_parser(
-        "plot", help="draw phase plane, time course and stroboscopic points of a run"
+        "plot", help="draw phase plane, time course, tooth force and spectrum of a run"
     )
     plot.add_argument("case", metavar="FILE.nc", type=Path, help="a run with its time course")
     plot.add_argument(
@@ -217,6 +222,25 @@ def _add_tables(commands: "argparse._SubParsersAction[_Parser]", pair: _Parser) 
         "parameters", parents=[pair], help="list every parameter with value, unit, kind and reason"
     )
     parameters.set_defaults(run=_parameters)
+
+    geometry = commands.add_parser(
+        "geometry", help="contact ratio and stiffness of steel wheels from their drawing"
+    )
+    geometry.add_argument("--module", required=True, help="such as '3 mm'")
+    geometry.add_argument(
+        "--teeth", required=True, nargs="+", metavar="Z", help="one number, or those of 3 and 2"
+    )
+    geometry.add_argument("--face-width", required=True, help="such as '20 mm'")
+    geometry.add_argument("--pressure-angle", default="20 deg", help="(default: 20 deg)")
+    geometry.add_argument(
+        "--profile-shift",
+        nargs="+",
+        default=["0"],
+        metavar="X",
+        help="in modules: one for both wheels, or those of 3 and 2 (default: 0)",
+    )
+    geometry.add_argument("--centre-distance", help="(default: without backlash)")
+    geometry.set_defaults(run=_geometry)
 
 
 def _simulate(options: argparse.Namespace) -> int:
@@ -259,6 +283,12 @@ def _variants(options: argparse.Namespace) -> int:
     from gearmesh.commands.tables import variants
 
     return variants(options)
+
+
+def _geometry(options: argparse.Namespace) -> int:
+    from gearmesh.commands.tables import geometry
+
+    return geometry(options)
 
 
 def _parameters(options: argparse.Namespace) -> int:

@@ -30,10 +30,10 @@ def simulate(options: argparse.Namespace) -> int:
     from gearmesh.study.cases import Case
 
     case = Case(chosen, nu, time_course=True)
-    [response] = integrate([pair.problem(chosen, nu)], pair.tolerance, pair.samples_per_period)
-    casefile.write_case(
-        options.output, casefile.attributes(pair, case), casefile.record(response, pair)
-    )
+    problem = pair.problem(chosen, nu)
+    [response] = integrate([problem], pair.tolerance, pair.samples_per_period)
+    columns = casefile.record(response, pair, problem)
+    casefile.write_case(options.output, casefile.attributes(pair, case), columns)
     if response.status != "ok":
         print(f"gearmesh: {options.output}: not integrated: {response.status}")
         return NOT_INTEGRATED
@@ -41,6 +41,14 @@ def simulate(options: argparse.Namespace) -> int:
     print(
         f"{options.output}{replaces}: {chosen.name} at nu_s = {nu:g}, "
         f"y from {response.y_min * y_st:.6g} to {response.y_max * y_st:.6g} mm"
+    )
+    low, high, factor, error = (
+        float(columns[name])
+        for name in ("force_min", "force_max", "dynamic_factor", "transmission_error_range")
+    )
+    print(
+        f"tooth force from {low:.6g} to {high:.6g} N, K_v = {factor:.4g}, "
+        f"transmission error {error:.4g} mm peak to peak"
     )
     if response.sensitive:
         error = max(response.y_max_error, response.y_min_error) * y_st
@@ -60,7 +68,7 @@ def sweep(options: argparse.Namespace) -> int:
 
     from gearmesh.interface.runs import sweep as integrate
 
-    found = integrate(pair, chosen, nus, direction=options.direction)
+    found = integrate(pair, chosen, nus, direction=options.direction, loads=options.loads)
     with replacing(options.output) as temporary:
         found.to_netcdf(temporary, engine="netcdf4")
     failed = int((found["status"] != 0).sum())

@@ -64,6 +64,30 @@ def parameters(options: argparse.Namespace) -> int:
     return 0
 
 
+def geometry(options: argparse.Namespace) -> int:
+    """Print contact ratio and stiffness of wheels from a drawing, and their parameters."""
+    from gearmesh.interface.geometry import geometry as compute
+
+    found = compute(
+        module=options.module,
+        teeth=_of_wheels(options.teeth),
+        face_width=options.face_width,
+        pressure_angle=options.pressure_angle,
+        profile_shift=_of_wheels(options.profile_shift),
+        centre_distance=options.centre_distance,
+    )
+    print_table([("quantity", "value", "unit", "formula"), *found.rows()])
+    print("\nfor a study:")
+    for name, value in found.parameters.items():
+        print(f"{name}: {value}")
+    return 0
+
+
+def _of_wheels(texts: Sequence[str]) -> object:
+    """Return one value, or two for wheels 3 and 2."""
+    return texts[0] if len(texts) == 1 else list(texts)
+
+
 def _text(value: object) -> str:
     if value is None:
         return "-"

@@ -6,19 +6,16 @@ many cases leaves them out (``case_files: false``), and its datasets are the sam
 """
 
 import itertools
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Container, Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 
 from gearmesh.data import casefile, classic
-from gearmesh.data.casefile import FIELDS, Field, Record
+from gearmesh.data.casefile import Field, Record
 from gearmesh.study.cases import Case
 from gearmesh.study.pair import Pair
-
-STORED = tuple((field, field.relative or field.name) for field in FIELDS)
-"""Fields and names of the variables of a batch file: lengths in static deflections only."""
 
 
 @dataclass(slots=True)
@@ -57,17 +54,9 @@ class Content:
         cases, extrema = slice(first, last), slice(ends[first], ends[last])
         columns = {
             name: self.columns[name][extrema if field.dimension == "extremum" else cases]
-            for field, name in STORED
+            for field, name in _stored(self.columns)
         }
         return Content(self.variants[cases], self.nu[cases], self.counts[cases], columns)
-
-
-def by_letter(cases: Iterable[Case]) -> dict[str, list[Case]]:
-    """Return the cases of each letter of Tab. 1, in their order."""
-    found: dict[str, list[Case]] = {}
-    for case in cases:
-        found.setdefault(case.variant.letter, []).append(case)
-    return found
 
 
 def write_batch(path: Path, pair: Pair, cases: Sequence[Case], records: Sequence[Record]) -> None:
@@ -97,7 +86,7 @@ def write_batch(path: Path, pair: Pair, cases: Sequence[Case], records: Sequence
         field.name: casefile.variable(field, field.name, np.array(values), ("case",))
         for field, values in of_cases
     }
-    for field, name in STORED:
+    for field, name in _stored(records[0]):
         joined = _joined(field, [record[name] for record in records])
         variables[name] = casefile.variable(field, name, joined, _dimensions(field))
     attributes = {
@@ -106,6 +95,11 @@ def write_batch(path: Path, pair: Pair, cases: Sequence[Case], records: Sequence
         **casefile.common_attributes(pair),
     }
     classic.write(path, attributes, variables)
+
+
+def _stored(names: Container[str]) -> list[tuple[Field, str]]:
+    """Return fields and names of variables of a batch file: lengths in static deflections only."""
+    return [(field, field.relative or field.name) for field in casefile.fields_in(names)]
 
 
 def _dimensions(field: Field) -> tuple[str, ...]:
@@ -131,7 +125,7 @@ def read_batch(path: Path) -> Content:
             variants=[names[i] for i in stored["variant"]],
             nu=stored["nu"],
             counts=stored["extremum_count"],
-            columns={name: stored[name] for _, name in STORED},
+            columns={name: stored[name] for _, name in _stored(stored)},
         )
 
 

@@ -8,7 +8,8 @@ was made (`attributes`). Manifests show whether it is still as it was written
 
 import functools
 import hashlib
-from collections.abc import Iterator, Mapping
+import itertools
+from collections.abc import Container, Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -17,6 +18,8 @@ import numpy as np
 
 from gearmesh.data import classic, provenance
 from gearmesh.data.classic import Variable
+from gearmesh.model.problem import Problem
+from gearmesh.solvers.loads import loads
 from gearmesh.solvers.response import STATUSES, Response
 from gearmesh.study.cases import Case
 from gearmesh.study.pair import Pair
@@ -106,8 +109,32 @@ SAMPLE_FIELDS = (
 )
 """The variables of a time course."""
 
+LOAD_FIELDS = (
+    Field("transmission_error_rms", "", "mm", "rms of the dynamic transmission error about its "
+          "mean"),
+    Field("transmission_error_range", "", "mm", "dynamic transmission error, peak to peak"),
+    Field("force_max", "", "N", "greatest tooth force"),
+    Field("force_min", "", "N", "least tooth force; negative: on rear flanks, or pulling"),
+    Field("dynamic_factor", "", "1", "dynamic factor K_v, greatest tooth force over static force"),
+    Field("force_bearing_3_max", "", "N", "greatest force on the bearing of wheel 3 along y"),
+    Field("force_bearing_2_max", "", "N", "greatest force on the bearing of wheel 2 along y"),
+)  # fmt: skip
+"""What engineers report of a run; in a record where it is asked for."""
 
-def record(response: Response, pair: Pair) -> Record:
+LOAD_SAMPLE_FIELDS = (
+    Field("force_normal", "sample", "N", "tooth force: elastic and damping force"),
+    Field("force_bearing_3", "sample", "N", "force on the bearing of wheel 3 along y"),
+    Field("force_bearing_2", "sample", "N", "force on the bearing of wheel 2 along y"),
+    Field("transmission_error", "sample", "mm",
+          "dynamic transmission error R_b3 phi_3 + R_b2 phi_2"),
+)  # fmt: skip
+"""The same over time."""
+
+ALL_FIELDS = (*FIELDS, *LOAD_FIELDS, *SAMPLE_FIELDS, *LOAD_SAMPLE_FIELDS)
+"""All variables, in the order of a file."""
+
+
+def record(response: Response, pair: Pair, problem: Problem | None = None) -> Record:
     """Convert a response into the units of a file.
 
     Parameters
@@ -116,6 +143,8 @@ def record(response: Response, pair: Pair) -> Record:
         Dimensionless, with or without samples.
     pair : Pair
         They set the scales of length, time and force.
+    problem : Problem, optional
+        The run, if the record is to hold its loads; its response must have samples.
     """
     scales = {
         "mm": pair.static_deflection,
@@ -124,7 +153,8 @@ def record(response: Response, pair: Pair) -> Record:
         "N": pair.static_force,
     }
     columns: Record = {}
-    for field, value in _values(response):
+    values = itertools.chain(_values(response), _loads(response, problem) if problem else ())
+    for field, value in values:
         array = np.asarray(field.fill if value is None else value, field.kind)
         if field.dimension and array.size == 0:  # of a run that failed
             # The format has no dimension of length 0, so a value that is absent stands for none.
@@ -134,6 +164,18 @@ def record(response: Response, pair: Pair) -> Record:
             columns[field.relative] = array
         columns[field.name] = array * scales[field.unit] if field.unit in scales else array
     return columns
+
+
+def without_time_course(columns: Record) -> Record:
+    """Return a record without the variables over samples."""
+    fields = (*SAMPLE_FIELDS, *LOAD_SAMPLE_FIELDS)
+    sampled = {name for field in fields for name in (field.name, field.relative)}
+    return {name: values for name, values in columns.items() if name not in sampled}
+
+
+def fields_in(names: Container[str]) -> list[Field]:
+    """Return the fields of every case that are among the names of variables."""
+    return [field for field in (*FIELDS, *LOAD_FIELDS) if (field.relative or field.name) in names]
 
 
 def absent(field: Field) -> float:
@@ -163,6 +205,18 @@ def _values(response: Response) -> Iterator[tuple[Field, object]]:
             yield field, getattr(response.samples, field.name)
 
 
+def _loads(response: Response, problem: Problem) -> Iterator[tuple[Field, object]]:
+    if response.samples is None:  # the run failed
+        yield from ((field, np.nan) for field in LOAD_FIELDS)
+        return
+    found = loads(problem, response.samples)
+    for field in LOAD_FIELDS:
+        of_force = field.name == "dynamic_factor"
+        yield field, found.force_max if of_force else getattr(found, field.name)
+    for field in LOAD_SAMPLE_FIELDS:
+        yield field, getattr(response.samples, field.name)
+
+
 @functools.lru_cache(maxsize=2**13)
 def case_digest(pair: Pair, case: Case) -> str:
     """Return the SHA-256 of all that decides the numbers of a case.
@@ -178,7 +232,8 @@ def case_digest(pair: Pair, case: Case) -> str:
     samples = pair.samples_per_period if case.time_course else 0
     problem = pair.problem(case.variant, case.nu)
     stated = repr((problem, scales, samples, pair.tolerance))
-    return hashlib.sha256(f"{stated} {_common_digest()}".encode()).hexdigest()
+    held = " with loads" if case.loads else ""
+    return hashlib.sha256(f"{stated}{held} {_common_digest()}".encode()).hexdigest()
 
 
 @functools.cache
@@ -229,7 +284,7 @@ def write_case(path: Path | str, attributes: Mapping[str, str | float], columns:
     """
     variables = {
         name: variable(field, name, columns[name], (field.dimension,) if field.dimension else ())
-        for field in (*FIELDS, *SAMPLE_FIELDS)
+        for field in ALL_FIELDS
         if field.name in columns
         for name in (field.name, field.relative)
         if name

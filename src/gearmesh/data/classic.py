@@ -9,13 +9,15 @@ import io
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from scipy.io import netcdf_file
 
 from gearmesh.data import writing
 from gearmesh.errors import InputError
+
+if TYPE_CHECKING:
+    from scipy.io import netcdf_file
 
 _64_BIT_OFFSET = 2
 
@@ -58,6 +60,8 @@ def write(
     InputError
         If it cannot be written; the message is one line with the reason.
     """
+    from scipy.io import netcdf_file  # here, because few of the jobs need it
+
     content = io.BytesIO()
     file = netcdf_file(content, "w", version=_64_BIT_OFFSET)
     _state(file, attributes)
@@ -81,7 +85,7 @@ def _state(place: Any, attributes: Mapping[str, Any]) -> None:
 
 
 @contextlib.contextmanager
-def opened(path: Path | str) -> Iterator[netcdf_file]:
+def opened(path: Path | str) -> Iterator["netcdf_file"]:
     """Open a file and read it whole.
 
     Raises
@@ -89,6 +93,8 @@ def opened(path: Path | str) -> Iterator[netcdf_file]:
     InputError
         If there is no such file, or it is not classic NetCDF.
     """
+    from scipy.io import netcdf_file
+
     try:
         with netcdf_file(path, mmap=False) as file:
             yield file
@@ -101,7 +107,7 @@ def values(variable: Any) -> np.ndarray:
     return variable.data.astype(variable.data.dtype.newbyteorder("="))
 
 
-def attributes(file: netcdf_file) -> dict[str, Any]:
+def attributes(file: "netcdf_file") -> dict[str, Any]:
     """Return the global attributes of a file."""
     return {
         name: value.decode() if isinstance(value, bytes) else value

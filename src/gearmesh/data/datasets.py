@@ -19,7 +19,7 @@ import xarray as xr
 
 from gearmesh.data import batches, casefile, writing
 from gearmesh.data.batches import Content
-from gearmesh.data.casefile import FIELDS, MISSING, Field
+from gearmesh.data.casefile import FIELDS, LOAD_FIELDS, MISSING, Field
 from gearmesh.errors import InputError
 from gearmesh.model.variants import Variant
 from gearmesh.study.cases import Study
@@ -87,13 +87,14 @@ def write_datasets(
     ):
         for file in (scalars, sequences):
             _write_coordinates(file, [variant for variant, _ in plan], nu)
-        for field in FIELDS:
+        fields = (*FIELDS, *(LOAD_FIELDS if study.plan.loads else ()))
+        for field in fields:
             _define(sequences if field.dimension else scalars, field)
         rows = {variant.name: row for row, (variant, _) in enumerate(plan)}
         for name, start, content in _by_block(batch_files, nu):
             block = nu[start : start + _BLOCK]
             place = rows[name], slice(start, start + block.size)
-            for field in FIELDS:
+            for field in fields:
                 cells = _cells(field, content, block, longest)
                 file = sequences if field.dimension else scalars
                 _store(file, field, place, cells, study.pair.static_deflection)

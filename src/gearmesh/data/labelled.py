@@ -9,8 +9,9 @@ import numpy as np
 import xarray as xr
 
 from gearmesh.data.casefile import (
+    ALL_FIELDS,
     FIELDS,
-    SAMPLE_FIELDS,
+    LOAD_FIELDS,
     Field,
     Record,
     attributes,
@@ -32,10 +33,10 @@ def run_dataset(response: Response, pair: Pair, case: Case) -> xr.Dataset:
 
     The samples have the dimension and coordinate ``time``, so ``ds.y.plot()`` works.
     """
-    columns = record(response, pair)
+    columns = record(response, pair, pair.problem(case.variant, case.nu))
     stated = attributes(pair, case) | {_FINAL_STATE: _written(response.final_state)}
     dataset = xr.Dataset(attrs=stated)
-    for field in (*FIELDS, *SAMPLE_FIELDS):
+    for field in ALL_FIELDS:
         if field.name in columns:
             dimension = "time" if field.dimension == "sample" else field.dimension
             for name, values, described in _twins(field, columns):
@@ -83,7 +84,10 @@ def _twins(field: Field, columns: Record) -> list[tuple[str, np.ndarray, dict[st
 
 
 def grid_dataset(
-    responses: Sequence[Response], pairs: Sequence[Pair], axes: Mapping[str, Sequence[object]]
+    responses: Sequence[Response],
+    pairs: Sequence[Pair],
+    axes: Mapping[str, Sequence[object]],
+    problems: Sequence[Problem] | None = None,
 ) -> xr.Dataset:
     """Return runs on a grid as a dataset.
 
@@ -95,6 +99,8 @@ def grid_dataset(
         The pair of each run; it sets the scales.
     axes : mapping of str to sequence
         Names and values of the axes, in their order.
+    problems : sequence of Problem, optional
+        The runs, if the dataset is to hold their loads; their responses must have samples.
 
     Returns
     -------
@@ -103,9 +109,10 @@ def grid_dataset(
         rows of extrema are filled with not-a-number.
     """
     shape = tuple(len(values) for values in axes.values())
-    records = [record(response, pair) for response, pair in zip(responses, pairs, strict=True)]
+    runs: Sequence[Problem | None] = problems or [None] * len(pairs)
+    records = [record(*run) for run in zip(responses, pairs, runs, strict=True)]
     dataset = xr.Dataset(coords={name: (name, list(values)) for name, values in axes.items()})
-    for field in FIELDS:
+    for field in (*FIELDS, *(LOAD_FIELDS if problems else ())):
         dimensions = (*axes, field.dimension) if field.dimension else tuple(axes)
         for name, _, stated in _twins(field, records[0]):
             cells = _stacked(field, [columns[name] for columns in records])

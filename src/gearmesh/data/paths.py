@@ -20,8 +20,14 @@ CHECKED = ("printed", *NOTEBOOK_NAMES)
 """The checks of claims: one for the printed numbers, and one for each notebook."""
 
 
-MECHANISMS = ("basins", "phases", "sweeps", "design_map", "lyapunov", "special_curves")
+MECHANISMS = ("basins", "phases", "sweeps", "design_map", "bands", "lyapunov", "special_curves")
 """Datasets about what lies behind the curves, besides the branches and their special points."""
+
+WHY = "why"
+"""The notebook about it."""
+
+WHY_FIGURES = ("branches", "basins", "sweeps", "special_curves", "lyapunov", "design_map")
+"""Its figures."""
 
 
 def nu_label(nu: float) -> str:
@@ -155,6 +161,18 @@ class Places:
     def batch(self, letter: str) -> Path:
         """Return the batch file of a letter of Tab. 1, from which the datasets are made."""
         return self.folder / "batches" / f"{letter}.nc"
+
+    @property
+    def why_files(self) -> list[Path]:
+        """The figures of the notebook about what lies behind the curves."""
+        return [file for name in WHY_FIGURES for file in self.figure_files(name)]
+
+    @property
+    def of_why(self) -> list[Path]:
+        """All that the report reads about what lies behind the curves."""
+        datasets = [self.mechanism(name) for name in MECHANISMS]
+        stated = [self.branches, self.special_points, self.thresholds]
+        return [*stated, *datasets, *self.why_files]
 
     def orbits(self, letter: str) -> tuple[Path, Path]:
         """Return the branches and the special points of a letter of Tab. 1."""

@@ -11,7 +11,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from gearmesh.dynamics.orbits import LARGEST_RESIDUAL, Orbit
+from gearmesh.dynamics.orbits import LARGEST_RESIDUAL, ROUNDED, Orbit
 from gearmesh.errors import NoOrbit
 from gearmesh.model.problem import Problem
 from gearmesh.solvers.reduced.period_map import advance, passage
@@ -96,13 +96,16 @@ class Curve:
             If Newton's method does not converge.
         """
         origin, best = place, np.inf
-        orbit, gradients = self._orbit(place), self._gradients(place)
+        orbit = self._orbit(place)
+        gradients = self._gradients(place, orbit)
         for _ in range(_MOST_CORRECTIONS):
             defect = self._defect(orbit)
             if not np.abs(defect).max() < best:
                 break
             best = float(np.abs(defect).max())
             found, found_orbit = place, orbit
+            if best < ROUNDED:
+                break
             gradients[:4, :4] = orbit.passage.jacobian - np.eye(4)
             try:
                 correction = np.linalg.solve(
@@ -114,13 +117,21 @@ class Curve:
             orbit = self._orbit(place)
         if not best < LARGEST_RESIDUAL:
             raise NoOrbit(f"the corrector stops at a residual of {best:.1e}")
-        gradients = self._gradients(found)
-        gradients[:4, :4] = found_orbit.passage.jacobian - np.eye(4)
+        return self._with_tangent(found, found_orbit, along)
+
+    def beside(self, point: Point, length: float) -> Point:
+        """Return the point at a small distance along the tangent, where the curve still is."""
+        place = point.place + length * point.tangent
+        return self._with_tangent(place, self._orbit(place), point.tangent)
+
+    def _with_tangent(self, place: np.ndarray, orbit: Orbit, along: np.ndarray) -> Point:
+        gradients = self._gradients(place)
+        gradients[:4, :4] = orbit.passage.jacobian - np.eye(4)
         tangent = np.linalg.svd(gradients)[2][-1]
         if tangent @ along < 0.0:
             tangent = -tangent
         determinant = float(np.linalg.det(np.vstack([gradients, tangent])))
-        return Point(found, self._values(found), tangent, determinant, found_orbit)
+        return Point(place, self._values(place), tangent, determinant, orbit)
 
     def at(self, orbit: Orbit, values: tuple[float, ...]) -> Point:
         """Return the point near `orbit` at a value of the first parameter, or near several.
@@ -182,23 +193,30 @@ class Curve:
         defect = orbit.passage.end - orbit.state
         return defect if self.condition is None else np.append(defect, self.condition(orbit))
 
-    def _gradients(self, place: np.ndarray) -> np.ndarray:
+    def _gradients(self, place: np.ndarray, orbit: Orbit | None = None) -> np.ndarray:
         """Return the gradients of the defect by differences, except for those of P^n in the state.
 
-        They affect the direction of Newton's steps, but not the point to which the steps converge.
+        With the orbit at `place` the differences are one-sided: good enough for the direction of
+        Newton's steps, which does not change the point to which they converge.
         """
         rows = len(place) - 1
         gradients = np.zeros((rows, len(place)))
         for i in range(4 if self.condition is None else 0, len(place)):
             away = _DIFFERENCE * np.eye(len(place))[i]
-            ahead, behind = (self._defect(self._orbit(place + side * away)) for side in (1.0, -1.0))
-            gradients[:, i] = (ahead - behind) / (2.0 * _DIFFERENCE)
+            ahead = self._defect(self._orbit(place + away))
+            if orbit is None:
+                behind = self._defect(self._orbit(place - away))
+                gradients[:, i] = (ahead - behind) / (2.0 * _DIFFERENCE)
+            else:
+                gradients[:, i] = (ahead - self._defect(orbit)) / _DIFFERENCE
         return gradients
 
 
 def at_phase(orbit: Orbit, phase: float) -> Orbit:
     """Return an orbit with its state taken at another mesh phase."""
     share = (phase - orbit.problem.initial_phase) % 1.0
+    if share == 0.0:
+        return orbit
     state = advance(orbit.problem, orbit.state, share)
     problem = replace(orbit.problem, initial_phase=phase)
     return Orbit(problem, orbit.periods, state, passage(problem, state, orbit.periods))

@@ -30,6 +30,9 @@ from gearmesh.solvers.reduced.variational import (
 LARGEST_RESIDUAL = 1e-11
 """Largest |P^n(x) - x| of an orbit, in y_st and y_st Omega_s."""
 
+ROUNDED = 1e-14
+"""Residual that another correction does not improve."""
+
 FARTHEST = 100.0
 """Size of y, in y_st, beyond which no orbits are searched for."""
 
@@ -221,7 +224,10 @@ def find_orbit(problem: Problem, periods: int = 1, start: np.ndarray | None = No
         If no initial state leads to an orbit.
     """
     if not is_reducible(problem):
-        raise NoOrbit("orbits: run-out, profile deviation and Fourier stiffness are not covered")
+        raise NoOrbit(
+            "orbits: unequal wheels, run-out, profile deviation, Fourier stiffness and other "
+            "general terms are not covered"
+        )
     if start is not None:
         return correct(problem, np.asarray(start, float), periods)
     reason = ""
@@ -249,7 +255,7 @@ def correct(problem: Problem, state: np.ndarray, periods: int = 1) -> Orbit:
     for _ in range(_MOST_CORRECTIONS):
         if orbit.passage.status != "complete":
             raise NoOrbit(f"the motion ends with {orbit.passage.status}")
-        better = _improve(orbit)
+        better = None if orbit.residual < ROUNDED else _improve(orbit)
         if better is None:
             break
         orbit = better
@@ -264,10 +270,14 @@ def correct(problem: Problem, state: np.ndarray, periods: int = 1) -> Orbit:
 
 
 def _improve(orbit: Orbit) -> Orbit | None:
-    """Return the orbit after one damped correction, or None if no correction improves it."""
+    """Return the orbit after one damped correction, or None if no correction improves it.
+
+    Damping helps far from an orbit. Near one a whole correction fails only because of rounding.
+    """
     correction = newton_correction(orbit.passage, orbit.state)
+    shortest = 1.0 if orbit.residual < LARGEST_RESIDUAL else _SHORTEST_CORRECTION
     share = 1.0
-    while share >= _SHORTEST_CORRECTION:
+    while share >= shortest:
         state = orbit.state + share * correction
         moved = passage(orbit.problem, state, orbit.periods)
         candidate = replace(orbit, state=state, passage=moved)

@@ -89,7 +89,7 @@ def special_points(curve: Curve, left: Point, right: Point) -> list[tuple[str, P
 def _inner_points(curve: Curve, left: Point, right: Point) -> Inner:
     """Return an offset, and the points that far inside the two ends: they give the slopes there."""
     offset = min(_OFFSET, 0.1 * _length(left, right))
-    return curve.step(left, offset), curve.step(right, -offset), offset
+    return curve.beside(left, offset), curve.beside(right, -offset), offset
 
 
 def _search(
@@ -110,7 +110,7 @@ def _search(
                     yield kind, point
             elif _may_dip(before, test(near), test(far), after, length, offset):
                 middle = curve.step(start, 0.5 * length)
-                below, above = curve.step(middle, -offset), curve.step(middle, offset)
+                below, above = curve.beside(middle, -offset), curve.beside(middle, offset)
                 pieces += [
                     (start, near, below, middle, offset),
                     (middle, above, far, end, offset),

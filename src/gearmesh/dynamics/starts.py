@@ -7,6 +7,7 @@ from itertools import product
 import numpy as np
 from scipy.linalg import expm
 
+from gearmesh.model.motion import state_at
 from gearmesh.model.problem import Problem, State
 from gearmesh.solvers.reduced.period_map import segments_of
 from gearmesh.solvers.simulation import simulate
@@ -40,21 +41,39 @@ def coordinates(state: State) -> np.ndarray:
     return np.array([state.y, state.v, state.b, state.b_rate])
 
 
+def initial_coordinates(problem: Problem) -> np.ndarray:
+    """Return y, y', b, b' at the start of a run."""
+    return coordinates(problem.initial_state or state_at(problem))
+
+
 def linear_orbit(problem: Problem) -> np.ndarray:
     """Return the state (y, y', b, b') of the periodic motion that never loses contact.
 
     Only the linear damping of the material acts. The equations are then linear, and a matrix
     exponential for each segment of the mesh period solves them.
     """
+    whole = np.eye(5)
+    for length, c, g in segments_of(problem):
+        whole = expm(linear_rates(problem, c, g) * length) @ whole
+    return np.linalg.solve(np.eye(4) - whole[:4, :4], whole[:4, 4])
+
+
+def linear_rates(problem: Problem, c: float, g: float) -> np.ndarray:
+    """Return the matrix of the linear equations of (y, y', b, b', 1) in normal mesh.
+
+    Parameters
+    ----------
+    problem : Problem
+        Only the linear damping of the material counts.
+    c, g : float
+        C/C_s, and friction's share of the elastic force.
+    """
     two_mu = 2.0 / problem.body_mass
     support = problem.bearing_stiffness / problem.body_mass
     damped = 2.0 * problem.bearing_damping_ratio * np.sqrt(support)
-    whole = np.eye(5)
-    for length, c, g in segments_of(problem):
-        mesh = np.array([c, problem.material[0], 0.0, 0.0, 0.0])  # N of (y, y', b, b', 1)
-        rates = np.zeros((5, 5))
-        rates[0, 1] = rates[2, 3] = 1.0
-        rates[3] = -two_mu * mesh - np.array([0.0, 0.0, support, damped, 0.0])
-        rates[1] = rates[3] - mesh + np.array([g * c, 0.0, 0.0, 0.0, 1.0])
-        whole = expm(rates * length) @ whole
-    return np.linalg.solve(np.eye(4) - whole[:4, :4], whole[:4, 4])
+    mesh = np.array([c, problem.material[0], 0.0, 0.0, 0.0])  # N of (y, y', b, b', 1)
+    rates = np.zeros((5, 5))
+    rates[0, 1] = rates[2, 3] = 1.0
+    rates[3] = -two_mu * mesh - np.array([0.0, 0.0, support, damped, 0.0])
+    rates[1] = rates[3] - mesh + np.array([g * c, 0.0, 0.0, 0.0, 1.0])
+    return rates

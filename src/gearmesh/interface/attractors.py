@@ -1,31 +1,30 @@
-"""Attractors, basins and Lyapunov exponents, with units."""
+"""Attractors and basins, with units."""
 
 from collections.abc import Sequence
 
 import numpy as np
 import xarray as xr
 
-from gearmesh.dynamics import attractors as found_by
-from gearmesh.dynamics import lyapunov
-from gearmesh.dynamics.attractors import TRANSIENT, Attractor
+from gearmesh.dynamics.attraction import basins as dynamics
+from gearmesh.dynamics.attraction.attractors import Attractor
+from gearmesh.dynamics.attraction.basins import TRANSIENT
+from gearmesh.dynamics.starts import initial_coordinates
 from gearmesh.errors import InputError
 from gearmesh.interface.lengths import with_lengths
 from gearmesh.interface.orbits import REGIMES
+from gearmesh.interface.reduced import reduced_problem
 from gearmesh.interface.statements import (
     Start,
-    read_frequencies,
-    read_frequency,
+    check_whole,
     read_lengths,
     read_variant,
     with_settings,
 )
 from gearmesh.model.problem import Problem
 from gearmesh.model.variants import Variant
-from gearmesh.solvers.reduced.runs import is_reducible
 from gearmesh.study.pair import Pair
 
 _MOST_REVOLUTIONS = 100_000
-_MOST_PERIODS = 10_000_000
 
 
 def attractors(
@@ -41,7 +40,8 @@ def attractors(
     Parameters
     ----------
     pair : Pair
-        The gear pair, without eccentricity, profile deviation and Fourier stiffness.
+        The gear pair: two equal wheels, without eccentricity, profile deviation, Fourier stiffness
+        and other terms that only the general solver knows.
     variant : str or Variant
         Which damping terms act where.
     nu : float or str
@@ -79,14 +79,15 @@ def attractors(
     >>> found.kind.values.tolist()
     ['periodic']
     """
-    problem = _problem(pair, variant, nu)
-    _check("revolutions", revolutions, 1, _MOST_REVOLUTIONS)
+    problem = reduced_problem(pair, variant, nu)
+    check_whole("revolutions", revolutions, 1, _MOST_REVOLUTIONS)
     if starts is None:
-        runs = [problem, *found_by.grid(problem)]
+        states = np.array([initial_coordinates(problem), *dynamics.grid(problem)])
     else:
         begun = [with_settings(pair, start) for start in _sequence("starts", starts)]
         runs = [one.problem(read_variant(variant), problem.nu) for one in begun]
-    found = found_by.reached(runs, revolutions)
+        states = np.array([initial_coordinates(run) for run in runs])
+    found = dynamics.reached(problem, states, revolutions)
     dataset = _described(found.attractors, pair)
     counts = np.bincount(found.labels, minlength=len(found.attractors))
     stated = {"units": "1", "long_name": "number of initial conditions that lead there"}
@@ -138,13 +139,13 @@ def basins(
     >>> found.reached.shape
     (1, 2, 2)
     """
-    problem = _problem(pair, variant, nu)
-    _check("revolutions", revolutions, 1, _MOST_REVOLUTIONS)
+    problem = reduced_problem(pair, variant, nu)
+    check_whole("revolutions", revolutions, 1, _MOST_REVOLUTIONS)
     heights, rates = (
         _once(name, read_lengths(pair, name, values)) for name, values in (("y", y), ("v", v))
     )
     phases = _once("phase", _phases(pair, phase))
-    found = found_by.basins(problem, heights, rates, phases.tolist(), revolutions)
+    found = dynamics.basins(problem, heights, rates, phases.tolist(), revolutions)
     dataset = _described(found.attractors, pair)
     for name, values, what in zip(
         ("share", "share_low", "share_high"),
@@ -164,86 +165,6 @@ def basins(
     stated = {"units": "1", "long_name": "position of the attractor that is reached"}
     dataset["reached"] = (("phase", "y", "v"), found.labels.astype(np.int16), stated)
     return _named(dataset, pair, variant, problem)
-
-
-def lyapunov_spectrum(
-    pair: Pair,
-    variant: str | Variant,
-    nu: float | str | Sequence[float | str] | np.ndarray,
-    *,
-    start: Start | None = None,
-    periods: int = 1000,
-    transient: int = 1000,
-) -> xr.Dataset:
-    """Return the Lyapunov exponents of a motion, from the exact Jacobians of its mesh periods.
-
-    Parameters
-    ----------
-    pair, variant
-        As for `attractors`.
-    nu : array_like
-        One mesh frequency ν_s, or speed of wheel 3, or several.
-    start : tuple, optional
-        Initial condition (y, dy/dτ_s), as for `simulate`; by default that of the pair.
-    periods : int
-        Mesh periods over which growth is measured, at least 8.
-    transient : int
-        Mesh periods before.
-
-    Returns
-    -------
-    xarray.Dataset
-        `exponents` over (nu, ``exponent``), the largest first, in 1/s and, as `exponents_rel`, in
-        Ω_s; `errors` and `errors_rel`, their standard errors. A motion that runs away has
-        not-a-number.
-
-    Raises
-    ------
-    InputError
-        One line, if an argument is wrong.
-
-    Examples
-    --------
-    >>> import gearmesh as gm
-    >>> found = gm.lyapunov_spectrum(gm.paper(), "c-material", 0.7, periods=100, transient=100)
-    >>> bool(found.exponents[0, 0] < 0.0)
-    True
-    """
-    nus = read_frequencies(nu, pair)
-    _check("periods", periods, 8, _MOST_PERIODS)
-    _check("transient", transient, 0, _MOST_PERIODS)
-    begun = with_settings(pair, start)
-    problems = [_problem(begun, variant, one) for one in nus]
-    spectra = [lyapunov.spectrum_of(one, periods, transient) for one in problems]
-    dataset = xr.Dataset()
-    for name, rates, what in (
-        ("exponents", np.array([one.exponents for one in spectra]), "Lyapunov exponents"),
-        ("errors", np.array([one.errors for one in spectra]), "standard errors of the exponents"),
-    ):
-        stated = {"units": "s-1", "long_name": what}
-        dataset[name] = (("nu", "exponent"), rates * pair.natural_frequency, stated)
-        stated = {"units": "1", "long_name": f"{what}, in Omega_s"}
-        dataset[f"{name}_rel"] = (("nu", "exponent"), rates, stated)
-    stated = {"units": "1", "long_name": "mesh frequency nu_s"}
-    dataset = dataset.assign_coords(nu=("nu", nus, stated))
-    dataset.attrs = {"variant": read_variant(variant).name, "parameters": begun.canonical()}
-    return dataset
-
-
-def _problem(pair: Pair, variant: str | Variant, nu: float | str) -> Problem:
-    """Return the problem that a request states."""
-    problem = pair.problem(read_variant(variant), read_frequency(nu, pair))
-    if not is_reducible(problem):
-        raise InputError(
-            "attractors: found run-out, profile deviation or Fourier stiffness; allowed are pairs "
-            "without them"
-        )
-    return problem
-
-
-def _check(name: str, value: object, low: int, high: int) -> None:
-    if isinstance(value, bool) or not isinstance(value, int) or not low <= value <= high:
-        raise InputError(f"{name}: found {value!r}; allowed is a whole number from {low} to {high}")
 
 
 def _sequence(name: str, values: object) -> Sequence[Start]:
@@ -286,6 +207,11 @@ def _described(found: Sequence[Attractor], pair: Pair) -> xr.Dataset:
             "periods",
             [orbit.periods if orbit else 0 for orbit in orbits],
             "least period in mesh periods, 0 if it is no orbit",
+        ),
+        (
+            "exponent_rel",
+            [one.exponent for one in found],
+            "largest Lyapunov exponent, in Omega_s",
         ),
         (
             "time_constant",

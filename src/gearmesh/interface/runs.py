@@ -101,6 +101,7 @@ def sweep(
     *,
     over: Mapping[str, Sequence[object]] | None = None,
     direction: Literal["up", "down"] | None = None,
+    loads: bool = False,
     revolutions: int | None = None,
     kept: int | None = None,
     start: Start | None = None,
@@ -121,6 +122,9 @@ def sweep(
     direction : {"up", "down"}, optional
         Start each run from the end of the run at the next lower (``"up"``) or higher ν_s. By
         default all runs have the same initial condition.
+    loads : bool
+        Whether to measure tooth forces, dynamic factors, transmission errors and bearing forces,
+        too. They are measured on the time course, which takes a while.
     revolutions, kept, start, tolerance
         As for `simulate`.
 
@@ -158,18 +162,21 @@ def sweep(
     order = sorted(nus, reverse=direction == "down")
     places = list(itertools.product(chosen, pairs))
     chains = [[one.problem(variant, x) for x in order] for variant, one in places]
+    samples = pair.samples_per_period if loads else 0
     if direction is None:
         problems = list(itertools.chain(*chains))
-        found = iter(simulation.simulate(problems, pair.tolerance))
+        found = iter(simulation.simulate(problems, pair.tolerance, samples))
         responses = [list(itertools.islice(found, len(order))) for _ in chains]
     else:
-        responses = run_chains(chains, pair.tolerance)
+        responses = run_chains(chains, pair.tolerance, samples)
     at = {x: i for i, x in enumerate(order)}
-    rows = [responses[i * len(pairs) + j][at[x]] for i in range(len(chosen)) for x in nus
-            for j in range(len(pairs))]  # fmt: skip
+    cells = [(i * len(pairs) + j, at[x]) for i in range(len(chosen)) for x in nus
+             for j in range(len(pairs))]  # fmt: skip
+    rows = [responses[chain][place] for chain, place in cells]
+    states = [chains[chain][place] for chain, place in cells] if loads else None
     axes: dict[str, Sequence[object]] = {"variant": [variant.name for variant in chosen], "nu": nus}
     axes |= {name: _axis(name, values, pair) for name, values in over.items()}
-    dataset = grid_dataset(rows, pairs * (len(rows) // len(pairs)), axes)
+    dataset = grid_dataset(rows, pairs * (len(rows) // len(pairs)), axes, states)
     return _described(dataset, pair, over)
 
 

@@ -71,6 +71,12 @@ def read_frequencies(
     return found
 
 
+def check_whole(name: str, value: object, low: int, high: int) -> None:
+    """Raise InputError if a value is not a whole number from `low` to `high`."""
+    if isinstance(value, bool) or not isinstance(value, int) or not low <= value <= high:
+        raise InputError(f"{name}: found {value!r}; allowed is a whole number from {low} to {high}")
+
+
 def with_settings(pair: Pair, start: Start | None = None, **settings: object) -> Pair:
     """Return a pair with the settings that are given, and with an initial condition."""
     changes = {name: value for name, value in settings.items() if value is not None}

@@ -4,13 +4,10 @@ The functions take floats or arrays and compile with numba, so that every solver
 unchanged.
 """
 
-from typing import Any
+from gearmesh.model.functions import Number
 
 NORMAL_MESH, CONTACT_LOSS, INVERSE_MESH = 1, 0, -1
 """Regimes of the mesh: y >= 0, -s < y < 0 and y <= -s."""
-
-Number = Any
-"""A float or an array."""
 
 
 def regime_of(y: Number, backlash: Number) -> Number:
@@ -23,9 +20,22 @@ def touching_level(regime: Number, backlash: Number) -> Number:
     return -backlash * (regime == INVERSE_MESH)
 
 
-def elastic_force(y: Number, c: Number, regime: Number, backlash: Number) -> Number:
-    """Return C (y H1 + (y + s) H2), in the unit of `c` times `y`."""
-    return c * (y - touching_level(regime, backlash)) * (regime != CONTACT_LOSS)
+def elastic_force(
+    y: Number,
+    c: Number,
+    regime: Number,
+    backlash: Number,
+    quadratic: float = 0.0,
+    cubic: float = 0.0,
+) -> Number:
+    """Return the elastic force of eq. (1), in the unit of `c` times `y`.
+
+    With d = y in normal mesh and d = y + s in inverse mesh it is C (d + c_2 d abs(d) + c_3 d^3);
+    without the `quadratic` c_2 and the `cubic` c_3 this is C (y H1 + (y + s) H2).
+    """
+    depth = y - touching_level(regime, backlash)
+    stiffening = (quadratic * regime + cubic * depth) * depth
+    return c * depth * (regime != CONTACT_LOSS) * (1.0 + stiffening)
 
 
 def dynamic_force(y: Number, c: Number) -> Number:

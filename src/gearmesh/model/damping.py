@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 
-from gearmesh.model.contact import Number
+from gearmesh.model.functions import Number
 
 
 def damping_force(velocity: Number, law: Sequence[float]) -> Number:

@@ -70,7 +70,8 @@ they cancel only in the sum coordinate phi_3 + phi_2.
 import math
 from typing import NamedTuple
 
-from gearmesh.model.stiffness import PITCH_PHASE, in_double_contact
+from gearmesh.model import stiffness
+from gearmesh.model.functions import Number
 
 
 class Pair(NamedTuple):
@@ -80,28 +81,60 @@ class Pair(NamedTuple):
     sigma: float
 
 
-def pairs_in_contact(phase: float, contact_ratio: float) -> list[Pair]:
+def pairs_in_contact(phase: float, contact_ratio: float, pitch_offset: float = 0.0) -> list[Pair]:
     """Return the pairs of teeth in contact at the mesh phase `phase`.
 
-    gamma runs through 0.5, 1, 0, -1, -0.5 along the path of a pair: half the load in double
-    contact, and a change of sign at the pitch point.
+    gamma runs through 0.5, 1, 0, -1, -0.5 along the path of a pair: an equal share of the load for
+    each pair in contact, and a change of sign at the pitch point, `pitch_offset` base pitches
+    behind the middle of the path.
     """
-    if in_double_contact(phase, contact_ratio):
-        since_middle = phase - round(phase)
-        return [Pair(0.5, since_middle - PITCH_PHASE), Pair(-0.5, since_middle + PITCH_PHASE)]
-    sigma = phase % 1.0 - PITCH_PHASE
-    return [Pair(0.0 if sigma == 0.0 else -math.copysign(1.0, sigma), sigma)]
+    places = [touching.place for touching in stiffness.touching_pairs(phase, contact_ratio)]
+    found = []
+    for place in places:
+        sigma = place - pitch_offset
+        side = 0.0 if sigma == 0.0 else -math.copysign(1.0, sigma)
+        found.append(Pair(side / len(places), sigma))
+    return found
 
 
-def mesh_gamma(phase: float, contact_ratio: float) -> float:
+def mesh_gamma(phase: float, contact_ratio: float, pitch_offset: float = 0.0) -> float:
     """Return gamma summed over the pairs in contact: 0 for two pairs, +1 then -1 for one."""
-    return sum(pair.gamma for pair in pairs_in_contact(phase, contact_ratio))
+    return sum(pair.gamma for pair in pairs_in_contact(phase, contact_ratio, pitch_offset))
 
 
-def arms(sigma: float, pressure_angle: float, teeth: int) -> tuple[float, float]:
-    """Return rho_3 / R_b and rho_2 / R_b at `sigma` base pitches from the pitch point."""
+def pitch_offset(teeth_3: int, teeth_2: int, pressure_angle: float, contact_ratio: float) -> float:
+    """Return how far the pitch point lies behind the middle of the path of contact.
+
+    Returns
+    -------
+    float
+        In base pitches; 0 for equal wheels.
+
+    Notes
+    -----
+    The path of contact begins where the tip circle of wheel 2 meets the mesh line and ends where
+    that of wheel 3 does. For standard wheels (addendum m_n) the two parts, up to the pitch point
+    and from it on, are sqrt(r_a2^2 - r_b2^2) - r_2 sin(alpha) and sqrt(r_a3^2 - r_b3^2) -
+    r_3 sin(alpha), and neither goes beyond the point where the mesh line touches the base circle.
+    They share the path of the stated contact ratio in this proportion.
+    """
+    r_3, r_2 = 0.5 * teeth_3, 0.5 * teeth_2
+    approach = min(_part_of_path(r_2, pressure_angle), r_3 * math.sin(pressure_angle))
+    recess = min(_part_of_path(r_3, pressure_angle), r_2 * math.sin(pressure_angle))
+    return contact_ratio * (approach / (approach + recess) - 0.5)
+
+
+def _part_of_path(pitch_radius: float, pressure_angle: float) -> float:
+    """Return the part of the path of contact that the tip circle of a wheel ends, in modules."""
+    base_radius = pitch_radius * math.cos(pressure_angle)
+    reach = math.sqrt((pitch_radius + 1.0) ** 2 - base_radius**2)
+    return reach - pitch_radius * math.sin(pressure_angle)
+
+
+def arms(sigma: Number, pressure_angle: float, teeth_3: int, teeth_2: int) -> tuple[Number, Number]:
+    """Return rho_3 / R_b3 and rho_2 / R_b2 at `sigma` base pitches from the pitch point."""
     middle = math.tan(pressure_angle)
-    return middle + 2.0 * math.pi / teeth * sigma, middle - 2.0 * math.pi / teeth * sigma
+    return middle + 2.0 * math.pi / teeth_3 * sigma, middle - 2.0 * math.pi / teeth_2 * sigma
 
 
 def follows_run_out(eccentricity_3: float, eccentricity_2: float) -> bool:
@@ -132,13 +165,14 @@ def friction_force(
     return -coefficient * elastic_force * gamma * run_out_sign * slip_sign
 
 
-def holding_force(pull: float) -> float:
+def holding_force(pull_3: Number, pull_2: Number, mass_3: float, mass_2: float) -> Number:
     """Return the F_T on wheel 3 that keeps z_3' - z_2' constant while the flanks stick.
 
     Parameters
     ----------
-    pull : float
-        Force of the bearings against z_3 - z_2: c_b (z_3 - z_2) + b_b (z_3' - z_2'). Each of the
-        equal bodies takes half of it.
+    pull_3, pull_2 : float
+        Force c_b z + b_b z' of the bearings against z of each body.
+    mass_3, mass_2 : float
+        Masses of the bodies. Equal bodies take half of the difference of the pulls each.
     """
-    return 0.5 * pull
+    return (pull_3 * mass_2 - pull_2 * mass_3) / (mass_3 + mass_2)

@@ -2,20 +2,19 @@
 
 The coordinates are q = (phi_3, phi_2, y_3, y_2, z_3, z_2): rotations of the two wheels and
 displacements of their bodies along the mesh line and across it. The rotations are held as the
-lengths R_b phi. Wheels, bodies and bearings of the pair are equal; a wheel alone has the inertia
-2 m_red on its base circle.
+lengths R_bi phi_i. An equal wheel alone has the inertia 2 m_red on its base circle.
 
-The model is stated here only. `accelerations` takes floats or truncated Taylor series of time; with
-series, tests compare the fast recurrences of the solvers with it.
+The model is stated here only. Every function takes floats, truncated Taylor series of time, or
+numbers that record what is done with them: the general solver derives its recurrences from this
+statement (`gearmesh.solvers.full.tape`), and tests hold those of the reduced solver against it.
 """
 
-import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
-from gearmesh.model import stiffness
 from gearmesh.model.contact import CONTACT_LOSS, elastic_force, regime_of
 from gearmesh.model.damping import damping_force
 from gearmesh.model.friction import (
@@ -25,16 +24,24 @@ from gearmesh.model.friction import (
     holding_force,
     pairs_in_contact,
 )
+from gearmesh.model.functions import (
+    Harmonic,
+    Number,
+    cosine,
+    harmonic_rate,
+    harmonic_sum,
+    sine,
+    square_root,
+)
+from gearmesh.model.mesh import backlash, mesh_phase, mesh_stiffness, since
 from gearmesh.model.problem import Problem, State
+from gearmesh.model.segments import pitch_offset_of
 
-Six = Sequence[float] | np.ndarray
-"""Six coordinates or their rates; truncated Taylor series may stand in place of floats."""
+Six = Sequence[Number] | np.ndarray
+"""Six coordinates or their rates; other numbers may stand in place of floats."""
 
 ROTATION_3, ROTATION_2, Y_3, Y_2, Z_3, Z_2 = range(6)
-"""Places of R_b phi_3, R_b phi_2, y_3, y_2, z_3, z_2 among the coordinates."""
-
-WHEEL_INERTIA = 2.0
-"""I / (R_b^2 m_red) of one wheel, so that the pair has the reduced mass m_red."""
+"""Places of R_b3 phi_3, R_b2 phi_2, y_3, y_2, z_3, z_2 among the coordinates."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -51,56 +58,82 @@ class Mode:
         First sign of eq. (6).
     slip_sign : int
         Second sign of eq. (6), that of z_3' - z_2'; 0 while the flanks stick, with z_3' = z_2'.
+    parted : bool
+        Whether the contact force is 0 although the flanks overlap (`GeneralTerms.non_adhesive`).
     """
 
     regime: int
     segment: float
-    run_out_sign: int = 1
-    slip_sign: int = 1
+    run_out_sign: Number = 1
+    slip_sign: Number = 1
+    parted: bool = False
 
 
-def _sine(angle: float) -> float:
-    """Return the sine of a float, or of a series by its own method."""
-    return angle.sin() if hasattr(angle, "sin") else math.sin(angle)
+class Forces(NamedTuple):
+    """Forces in the mesh, in F_st: all that the wheels exert on each other.
+
+    Attributes
+    ----------
+    stiffness : float
+        C / C_s.
+    elastic : float
+        Elastic force, as the friction takes it.
+    contact : float
+        Elastic and damping force of the flanks in contact, and damping of the lubricant in contact
+        loss; positive where it presses the flanks of normal mesh.
+    normal : float
+        What of it acts: all, or 0 while the flanks are parted.
+    friction : float
+        F_T on wheel 3.
+    moment_3, moment_2 : float
+        Additional moments of friction over R_bi.
+    """
+
+    stiffness: Number
+    elastic: Number
+    contact: Number
+    normal: Number
+    friction: Number
+    moment_3: Number
+    moment_2: Number
 
 
-def _cosine(angle: float) -> float:
-    return angle.cos() if hasattr(angle, "cos") else math.cos(angle)
-
-
-def mesh_phase(problem: Problem, time: float) -> float:
-    """Return the mesh phase at `time`, in mesh periods from t = 0 of eq. (4)."""
-    return time / problem.period
-
-
-def angles(problem: Problem, time: float, q: Six) -> tuple[float, float]:
+def angles(problem: Problem, time: Number, q: Six) -> tuple[Number, Number]:
     """Return Phi_3 and Delta - Phi_2, where Phi_i = omega_i t + phi_i is a total rotation."""
-    turned = problem.rotation_speed * time
-    phi_3 = q[ROTATION_3] / problem.base_radius
-    phi_2 = q[ROTATION_2] / problem.base_radius
-    return turned + phi_3, problem.eccentricity_angle - (turned + phi_2)
+    wheel_3, wheel_2 = problem.both_wheels
+    speed_3, speed_2 = problem.rotation_speeds
+    phi_3 = q[ROTATION_3] / wheel_3.base_radius
+    phi_2 = q[ROTATION_2] / wheel_2.base_radius
+    return speed_3 * time + phi_3, problem.eccentricity_angle - (speed_2 * time + phi_2)
 
 
-def levers(problem: Problem, time: float, q: Six) -> tuple[float, float]:
-    """Return dy/dphi_3 and dy/dphi_2 in R_b: run-out changes the lever of the normal force."""
+def levers(problem: Problem, time: Number, q: Six) -> tuple[Number, Number]:
+    """Return dy/dphi_3 and dy/dphi_2 in R_bi: run-out changes the lever of the normal force."""
+    if not problem.has_run_out:
+        return 1.0, 1.0
+    wheel_3, wheel_2 = problem.both_wheels
     angle_3, angle_2 = angles(problem, time, q)
     return (
-        1.0 + problem.eccentricity_3 / problem.base_radius * _cosine(angle_3),
-        1.0 + problem.eccentricity_2 / problem.base_radius * _cosine(angle_2),
+        1.0 + problem.eccentricity_3 / wheel_3.base_radius * cosine(angle_3),
+        1.0 + problem.eccentricity_2 / wheel_2.base_radius * cosine(angle_2),
     )
 
 
-def deviation(problem: Problem, time: float) -> tuple[float, float]:
-    """Return the profile deviation f and its rate."""
-    value = rate = 0.0
-    for n, (cosine, sine) in enumerate(problem.deviation, start=1):
-        angle = n * problem.nu * time
-        value += cosine * _cosine(angle) + sine * _sine(angle)
-        rate += n * problem.nu * (sine * _cosine(angle) - cosine * _sine(angle))
-    return value, rate
+def _deviation(problem: Problem) -> list[Harmonic]:
+    return [Harmonic(n, *amplitudes) for n, amplitudes in enumerate(problem.deviation, start=1)]
 
 
-def relative_motion(problem: Problem, time: float, q: Six, v: Six) -> tuple[float, float]:
+def displacement(problem: Problem, time: Number, q: Six) -> Number:
+    """Return the relative motion y of eq. (3), as `relative_motion` does."""
+    y = q[ROTATION_3] + q[ROTATION_2] + q[Y_3] - q[Y_2]
+    y += harmonic_sum(_deviation(problem), problem.nu * time)
+    if problem.has_run_out:
+        angle_3, angle_2 = angles(problem, time, q)
+        y += problem.eccentricity_3 * sine(angle_3) - problem.eccentricity_2 * sine(angle_2)
+    return y
+
+
+def relative_motion(problem: Problem, time: Number, q: Six, v: Six) -> tuple[Number, Number]:
     """Return the relative motion y of eq. (3) and its rate.
 
     Parameters
@@ -111,81 +144,144 @@ def relative_motion(problem: Problem, time: float, q: Six, v: Six) -> tuple[floa
     q, v : array_like, shape (6,)
         Coordinates and their rates, in y_st and y_st Omega_s.
     """
-    angle_3, angle_2 = angles(problem, time, q)
-    f, f_rate = deviation(problem, time)
-    y = q[ROTATION_3] + q[ROTATION_2] + q[Y_3] - q[Y_2] + f
-    y += problem.eccentricity_3 * _sine(angle_3) - problem.eccentricity_2 * _sine(angle_2)
     lever_3, lever_2 = levers(problem, time, q)
-    rate = lever_3 * v[ROTATION_3] + lever_2 * v[ROTATION_2] + v[Y_3] - v[Y_2] + f_rate
-    rate += problem.eccentricity_3 * problem.rotation_speed * _cosine(angle_3)
-    rate += problem.eccentricity_2 * problem.rotation_speed * _cosine(angle_2)
-    return y, rate
+    rate = lever_3 * v[ROTATION_3] + lever_2 * v[ROTATION_2] + v[Y_3] - v[Y_2]
+    rate += harmonic_rate(_deviation(problem), problem.nu * time, problem.nu)
+    if problem.has_run_out:
+        angle_3, angle_2 = angles(problem, time, q)
+        speed_3, speed_2 = problem.rotation_speeds
+        rate += problem.eccentricity_3 * speed_3 * cosine(angle_3)
+        rate += problem.eccentricity_2 * speed_2 * cosine(angle_2)
+    return displacement(problem, time, q), rate
 
 
-def mesh_stiffness(problem: Problem, phase: float, segment: float | None = None) -> float:
-    """Return C / C_s at the mesh phase `phase`; `segment` chooses the side of a jump."""
-    levels = (problem.contact_ratio, problem.stiffness_max, problem.stiffness_min)
-    if problem.stiffness_harmonics:
-        return float(stiffness.fourier(phase, *levels, problem.stiffness_harmonics))
-    return float(stiffness.rectangular(phase if segment is None else segment, *levels))
-
-
-def run_out_argument(problem: Problem, time: float, q: Six, v: Six) -> float:
+def run_out_argument(problem: Problem, time: Number, q: Six, v: Six) -> Number:
     """Return the bracket of eq. (6), e_3 Phi_3' sin Phi_3 - e_2 Phi_2' sin(Delta - Phi_2)."""
+    wheel_3, wheel_2 = problem.both_wheels
     angle_3, angle_2 = angles(problem, time, q)
-    speed_3 = problem.rotation_speed + v[ROTATION_3] / problem.base_radius
-    speed_2 = problem.rotation_speed + v[ROTATION_2] / problem.base_radius
-    return problem.eccentricity_3 * speed_3 * _sine(
+    speed_3, speed_2 = problem.rotation_speeds
+    speed_3 += v[ROTATION_3] / wheel_3.base_radius
+    speed_2 += v[ROTATION_2] / wheel_2.base_radius
+    return problem.eccentricity_3 * speed_3 * sine(
         angle_3
-    ) - problem.eccentricity_2 * speed_2 * _sine(angle_2)
+    ) - problem.eccentricity_2 * speed_2 * sine(angle_2)
 
 
-def bearing_damping(problem: Problem) -> float:
-    """Return b_b of a body, in F_st / (y_st Omega_s)."""
-    critical = 2.0 * math.sqrt(problem.bearing_stiffness * problem.body_mass)
-    return problem.bearing_damping_ratio * critical
+def run_out_integral(problem: Problem, time: Number, q: Six) -> Number:
+    """Return a function of time whose rate is `run_out_argument`."""
+    angle_3, angle_2 = angles(problem, time, q)
+    return -(problem.eccentricity_3 * cosine(angle_3) + problem.eccentricity_2 * cosine(angle_2))
 
 
 def mode_of(problem: Problem, time: float, q: Six, v: Six) -> Mode:
     """Return the branches that act in a state; where a sign has argument 0 it is +1."""
-    y, _ = relative_motion(problem, time, q, v)
-    regime = int(regime_of(y, problem.backlash))
-    segment = mesh_phase(problem, time)
-    if not follows_run_out(problem.eccentricity_3, problem.eccentricity_2):
-        return Mode(regime, segment)
-    bracket = run_out_argument(problem, time, q, v)
-    return Mode(regime, segment, 1 if bracket >= 0.0 else -1, 1 if v[Z_3] >= v[Z_2] else -1)
-
-
-def friction_actions(
-    problem: Problem, time: float, q: Six, v: Six, mode: Mode, elastic: float
-) -> tuple[float, float, float]:
-    """Return F_T on wheel 3 and the additional moments on both wheels over R_b, in F_st."""
-    phase = mesh_phase(problem, time)
-    # Whole periods apart, `phase` and `segment` are the same place on the mesh line.
-    passed = phase - mode.segment - round(phase - mode.segment)
-    force = moment_3 = moment_2 = 0.0
-    for gamma, sigma in pairs_in_contact(mode.segment, problem.contact_ratio):
-        pair_force = friction_force(
-            elastic, problem.friction_coefficient, gamma, mode.run_out_sign, mode.slip_sign
+    y, rate = relative_motion(problem, time, q, v)
+    regime = int(regime_of(y, backlash(problem, time)))
+    mode = Mode(regime, mesh_phase(problem, time))
+    if follows_run_out(problem.eccentricity_3, problem.eccentricity_2):
+        bracket = run_out_argument(problem, time, q, v)
+        mode = Mode(
+            regime, mode.segment, 1 if bracket >= 0.0 else -1, 1 if v[Z_3] >= v[Z_2] else -1
         )
+    if problem.terms.non_adhesive and regime != CONTACT_LOSS:
+        pulls = regime * forces(problem, time, q, v, y, rate, mode).contact < 0.0
+        mode = Mode(regime, mode.segment, mode.run_out_sign, mode.slip_sign, pulls)
+    return mode
+
+
+def bearing_pulls(problem: Problem, q: Six, v: Six) -> list[Number]:
+    """Return the forces c_b q + b_b q' of the bearings against y_3, y_2, z_3, z_2."""
+    pulls = []
+    for i in (Y_3, Y_2, Z_3, Z_2):
+        wheel = problem.both_wheels[i % 2]
+        across = 1 if i in (Z_3, Z_2) else 0
+        stiffness, damping = wheel.bearing_stiffness[across], wheel.bearing_damping[across]
+        pulls.append(stiffness * q[i] + damping * v[i])
+    return pulls
+
+
+def _friction(
+    problem: Problem, time: Number, q: Six, v: Six, mode: Mode, elastic: Number
+) -> tuple[Number, Number, Number]:
+    """Return F_T on wheel 3 and the additional moments on both wheels over R_bi, in F_st."""
+    force = moment_3 = moment_2 = 0.0
+    if problem.friction_coefficient == 0.0:
+        return force, moment_3, moment_2
+    wheel_3, wheel_2 = problem.both_wheels
+    passed = since(mesh_phase(problem, time), mode.segment)
+    offset = pitch_offset_of(problem)
+    pulls = bearing_pulls(problem, q, v)
+    held = holding_force(pulls[2], pulls[3], wheel_3.body_mass, wheel_2.body_mass)
+    pairs = pairs_in_contact(mode.segment, problem.contact_ratio, offset)
+    for gamma, sigma in pairs:
         if mode.slip_sign == 0:
-            pair_force = holding_force(bearing_pull(problem, q, v))
-        arm_3, arm_2 = arms(sigma + passed, problem.pressure_angle, problem.teeth)
+            pair_force = held / len(pairs)
+        else:
+            pair_force = friction_force(
+                elastic, problem.friction_coefficient, gamma, mode.run_out_sign, mode.slip_sign
+            )
+        arm_3, arm_2 = arms(sigma + passed, problem.pressure_angle, wheel_3.teeth, wheel_2.teeth)
         force += pair_force
         moment_3 -= arm_3 * pair_force
         moment_2 -= arm_2 * pair_force
     return force, moment_3, moment_2
 
 
-def bearing_pull(problem: Problem, q: Six, v: Six) -> float:
-    """Return the force of the bearings against z_3 - z_2."""
-    pull = problem.bearing_stiffness * (q[Z_3] - q[Z_2])
-    return pull + bearing_damping(problem) * (v[Z_3] - v[Z_2])
+def forces(
+    problem: Problem, time: Number, q: Six, v: Six, y: Number, rate: Number, mode: Mode
+) -> Forces:
+    """Return the forces in the mesh at the relative motion `y` and its `rate`."""
+    terms = problem.terms
+    c = mesh_stiffness(problem, mesh_phase(problem, time), mode.segment)
+    gap = backlash(problem, time)
+    elastic = elastic_force(y, c, mode.regime, gap, terms.restoring_2, terms.restoring_3)
+    if mode.regime == CONTACT_LOSS:
+        damping = damping_force(rate, problem.lubricant)
+    else:
+        damping = damping_force(rate, problem.material)
+        if terms.damping_power == 0.5:
+            damping = square_root(c) * damping
+        elif terms.damping_power == 1.0:
+            damping = c * damping
+    contact = elastic + damping
+    if mode.parted:
+        return Forces(c, 0.0, contact, 0.0, 0.0, 0.0, 0.0)
+    friction = _friction(problem, time, q, v, mode, elastic)
+    return Forces(c, elastic, contact, contact, *friction)
+
+
+def loads(problem: Problem, time: Number) -> tuple[Number, Number]:
+    """Return the moments M_3 / R_b3 and M_2 / R_b2 in F_st: 1, and their harmonics."""
+    angle = problem.nu * time
+    return (
+        1.0 + harmonic_sum(problem.terms.torque_harmonics_3, angle),
+        1.0 + harmonic_sum(problem.terms.torque_harmonics_2, angle),
+    )
+
+
+def accelerations_under(
+    problem: Problem, time: Number, q: Six, v: Six, mesh: Forces
+) -> list[Number]:
+    """Return the second time derivatives of the six coordinates under the forces of the mesh."""
+    wheel_3, wheel_2 = problem.both_wheels
+    lever_3, lever_2 = levers(problem, time, q)
+    load_3, load_2 = loads(problem, time)
+    frame_3, frame_2 = problem.terms.torsional_damping
+    pulls = bearing_pulls(problem, q, v)
+    moment_3 = load_3 - lever_3 * mesh.normal + mesh.moment_3 - frame_3 * v[ROTATION_3]
+    moment_2 = load_2 - lever_2 * mesh.normal + mesh.moment_2 - frame_2 * v[ROTATION_2]
+    return [
+        moment_3 / wheel_3.inertia,
+        moment_2 / wheel_2.inertia,
+        (-pulls[0] - mesh.normal) / wheel_3.body_mass,
+        (-pulls[1] + mesh.normal) / wheel_2.body_mass,
+        (-pulls[2] + mesh.friction) / wheel_3.body_mass,
+        (-pulls[3] - mesh.friction) / wheel_2.body_mass,
+    ]
 
 
 def accelerations(
-    problem: Problem, time: float, q: Six, v: Six, mode: Mode | None = None
+    problem: Problem, time: Number, q: Six, v: Six, mode: Mode | None = None
 ) -> np.ndarray:
     """Return the second time derivatives of the six coordinates.
 
@@ -207,24 +303,8 @@ def accelerations(
     if mode is None:
         mode = mode_of(problem, time, q, v)
     y, rate = relative_motion(problem, time, q, v)
-    c = mesh_stiffness(problem, mesh_phase(problem, time), mode.segment)
-    elastic = elastic_force(y, c, mode.regime, problem.backlash)
-    law = problem.lubricant if mode.regime == CONTACT_LOSS else problem.material
-    normal = elastic + damping_force(rate, law)
-    friction, moment_3, moment_2 = friction_actions(problem, time, q, v, mode, elastic)
-    lever_3, lever_2 = levers(problem, time, q)
-    damping = bearing_damping(problem)
-    bearing = [-problem.bearing_stiffness * q[i] - damping * v[i] for i in range(6)]
-    return np.array(
-        [
-            (1.0 - lever_3 * normal + moment_3) / WHEEL_INERTIA,
-            (1.0 - lever_2 * normal + moment_2) / WHEEL_INERTIA,
-            (bearing[Y_3] - normal) / problem.body_mass,
-            (bearing[Y_2] + normal) / problem.body_mass,
-            (bearing[Z_3] + friction) / problem.body_mass,
-            (bearing[Z_2] - friction) / problem.body_mass,
-        ]
-    )
+    mesh = forces(problem, time, q, v, y, rate, mode)
+    return np.array(accelerations_under(problem, time, q, v, mesh))
 
 
 def static_equilibrium(problem: Problem, y: float = 1.0) -> tuple[np.ndarray, np.ndarray]:
@@ -236,11 +316,17 @@ def static_equilibrium(problem: Problem, y: float = 1.0) -> tuple[np.ndarray, np
     still move y.
     """
     q = np.zeros(6)
-    q[Y_3] = -1.0 / problem.bearing_stiffness
-    q[Y_2] = 1.0 / problem.bearing_stiffness
+    compliance_3, compliance_2 = _compliances(problem)
+    q[Y_3], q[Y_2] = -compliance_3, compliance_2
     v = np.zeros(6)
     _rotate_to(problem, y, q, v)
     return q, v
+
+
+def _compliances(problem: Problem) -> tuple[float, float]:
+    """Return C_s / c_b of both bearings along the mesh line."""
+    wheel_3, wheel_2 = problem.both_wheels
+    return 1.0 / wheel_3.bearing_stiffness[0], 1.0 / wheel_2.bearing_stiffness[0]
 
 
 def _rotate_to(problem: Problem, y: float, q: np.ndarray, v: np.ndarray) -> None:
@@ -268,7 +354,7 @@ def state_at(problem: Problem, y: float = 1.0, v: float = 0.0) -> State:
     """
     q, rates = static_equilibrium(problem, y)
     rates[[ROTATION_3, ROTATION_2]] = 0.5 * v
-    b = -2.0 / problem.bearing_stiffness
+    b = -sum(_compliances(problem))
     # y is the sum of both motions, as everywhere in the reduced system.
     return State((y - b) + b, v, b, 0.0, coordinates=(*q.tolist(), *rates.tolist()))
 
@@ -282,8 +368,10 @@ def start(problem: Problem) -> tuple[np.ndarray, np.ndarray]:
         both = np.array(state.coordinates)
         return both[:6], both[6:]
     q, v = np.zeros(6), np.zeros(6)
-    q[Y_3], q[Y_2] = 0.5 * state.b, -0.5 * state.b
-    v[Y_3], v[Y_2] = 0.5 * state.b_rate, -0.5 * state.b_rate
+    compliance_3, compliance_2 = _compliances(problem)
+    share_3 = compliance_3 / (compliance_3 + compliance_2)
+    q[Y_3], q[Y_2] = share_3 * state.b, (share_3 - 1.0) * state.b
+    v[Y_3], v[Y_2] = share_3 * state.b_rate, (share_3 - 1.0) * state.b_rate
     v[[ROTATION_3, ROTATION_2]] = 0.5 * (state.v - state.b_rate)
     _rotate_to(problem, state.y, q, v)
     return q, v

@@ -2,6 +2,105 @@
 
 import math
 from dataclasses import dataclass, replace
+from typing import NamedTuple
+
+from gearmesh.model.functions import Harmonic
+
+
+class ToothFactor(NamedTuple):
+    """A factor of the stiffness of one tooth: a crack lowers it, 0 is a missing tooth.
+
+    `wheel` is 3 or 2. `tooth` counts from 0, the tooth in single contact at t = T / 2.
+    """
+
+    wheel: int
+    tooth: int
+    factor: float
+
+
+@dataclass(frozen=True, slots=True)
+class Wheel:
+    """One wheel with its body and bearings, in the units of `Problem`.
+
+    Attributes
+    ----------
+    teeth : int
+        Z_i.
+    base_radius : float
+        R_bi / y_st.
+    inertia : float
+        J_i / (R_bi^2 m_red). The inverse values of both wheels add up to 1.
+    body_mass : float
+        m_i / m_red, in y and z.
+    bearing_stiffness : tuple of two float
+        c_b / C_s along the mesh line (y) and across it (z).
+    bearing_damping_ratio : tuple of two float
+        b_b / (2 sqrt(c_b m)) in y and z.
+    """
+
+    teeth: int
+    base_radius: float
+    inertia: float
+    body_mass: float
+    bearing_stiffness: tuple[float, float]
+    bearing_damping_ratio: tuple[float, float]
+
+    @property
+    def bearing_damping(self) -> tuple[float, float]:
+        """b_b in y and z, in F_st / (y_st Omega_s)."""
+        along, across = (
+            ratio * (2.0 * math.sqrt(stiffness * self.body_mass))
+            for stiffness, ratio in zip(
+                self.bearing_stiffness, self.bearing_damping_ratio, strict=True
+            )
+        )
+        return along, across
+
+
+@dataclass(frozen=True, slots=True)
+class GeneralTerms:
+    """The terms of eq. (1) that the paper writes and its examples do not use; all absent here.
+
+    The names are those of the parameters of a pair.
+
+    Attributes
+    ----------
+    torque_harmonics_3, torque_harmonics_2 : tuple of Harmonic
+        M_i(t) / M_i - 1 of each wheel.
+    torsional_damping : tuple of two float
+        Damping of the rotation of wheels 3 and 2 to the frame, per R_b^2.
+    stiffness_fourier : tuple of (float, float)
+        Amplitudes (cosine, sine) of harmonics 1, 2, ... of C(t) / C_s.
+    stiffness_table : tuple of (float, float)
+        C(t) / C_s: mesh phases from 0 to 1 and values, linear in between. Two values at one phase
+        are a jump.
+    tooth_pair_stiffness : tuple of float
+        Stiffness of one pair of teeth in C_s, at equal distances along its path of contact; linear
+        in between, added over the pairs in contact.
+    tooth_factors : tuple of ToothFactor
+        Factors of single teeth. A pair of teeth takes the product of its two.
+    restoring_2, restoring_3 : float
+        The elastic force is C (d + c_2 d abs(d) + c_3 d^3) at the depth d.
+    non_adhesive : bool
+        Whether the contact force never pulls: while it would, it is 0, and so is the friction.
+    damping_power : float
+        The damping of the material is multiplied by (C / C_s) to this power.
+    backlash_harmonics : tuple of Harmonic
+        s(t) - s, in y_st.
+    """
+
+    torque_harmonics_3: tuple[Harmonic, ...] = ()
+    torque_harmonics_2: tuple[Harmonic, ...] = ()
+    torsional_damping: tuple[float, float] = (0.0, 0.0)
+    stiffness_fourier: tuple[tuple[float, float], ...] = ()
+    stiffness_table: tuple[tuple[float, float], ...] = ()
+    tooth_pair_stiffness: tuple[float, ...] = ()
+    tooth_factors: tuple[ToothFactor, ...] = ()
+    restoring_2: float = 0.0
+    restoring_3: float = 0.0
+    non_adhesive: bool = False
+    damping_power: float = 0.0
+    backlash_harmonics: tuple[Harmonic, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
@@ -50,10 +149,15 @@ class Problem:
     initial_phase : float
         Mesh phase at the start of the run, in mesh periods.
     revolutions, kept_revolutions : int
-        Revolutions of the wheels that are run, and how many of the last are measured; 0 measures
+        Revolutions of wheel 3 that are run, and how many of the last are measured; 0 measures
         nothing, for a run that only lets a transient die out.
     initial_state : State, optional
         Initial condition, if it is not rest in static equilibrium.
+    wheels : tuple of two Wheel, optional
+        Wheels 3 and 2 if they are not equal, or their bearings are not the same in y and z. The
+        fields above then hold the values of wheel 3 along the mesh line.
+    terms : GeneralTerms
+        What eq. (1) contains besides.
     """
 
     nu: float
@@ -79,6 +183,23 @@ class Problem:
     revolutions: int = 5
     kept_revolutions: int = 1
     initial_state: "State | None" = None
+    wheels: tuple[Wheel, Wheel] | None = None
+    terms: GeneralTerms = GeneralTerms()
+
+    @property
+    def both_wheels(self) -> tuple[Wheel, Wheel]:
+        """Wheels 3 and 2, equal ones too."""
+        if self.wheels is not None:
+            return self.wheels
+        wheel = Wheel(
+            self.teeth,
+            self.base_radius,
+            2.0,
+            self.body_mass,
+            (self.bearing_stiffness, self.bearing_stiffness),
+            (self.bearing_damping_ratio, self.bearing_damping_ratio),
+        )
+        return wheel, wheel
 
     @property
     def period(self) -> float:
@@ -86,9 +207,10 @@ class Problem:
         return 2.0 * math.pi / self.nu
 
     @property
-    def rotation_speed(self) -> float:
-        """Mean speed of the wheels omega_i = omega_c / Z, in Omega_s."""
-        return self.nu / self.teeth
+    def rotation_speeds(self) -> tuple[float, float]:
+        """Mean speeds of wheels 3 and 2, omega_i = omega_c / Z_i, in Omega_s."""
+        wheel_3, wheel_2 = self.both_wheels
+        return self.nu / wheel_3.teeth, self.nu / wheel_2.teeth
 
     @property
     def start_time(self) -> float:
@@ -179,9 +301,11 @@ class Branches:
         The two signs of eq. (6); the second is 0 while the flanks stick.
     level : float
         Level of y that was passed last.
-    exact : tuple of four bool
-        Whether y', y - `level` and the bracket of eq. (6) are exactly 0, and whether sticking has
-        just ended.
+    exact : tuple of bool
+        Whether y', y - `level` and the bracket of eq. (6) are exactly 0, whether sticking has just
+        ended, and whether y + s(t) and the contact force are exactly 0.
+    parted : bool
+        Whether the contact force is 0 although the flanks overlap (`GeneralTerms.non_adhesive`).
     """
 
     problem: Problem
@@ -190,7 +314,8 @@ class Branches:
     measured: bool
     signs: tuple[float, float] = (1.0, 1.0)
     level: float = 0.0
-    exact: tuple[bool, bool, bool, bool] = (False, False, False, False)
+    exact: tuple[bool, ...] = (False,) * 6
+    parted: bool = False
 
 
 def _laws(problem: Problem) -> Problem:

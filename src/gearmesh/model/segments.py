@@ -1,12 +1,12 @@
-"""The segments of a mesh period, in which neither C(t) nor gamma(t) jumps."""
+"""The segments of a mesh period, in which neither C(t) nor gamma(t) jumps or has a kink."""
 
 from functools import lru_cache
 from itertools import pairwise
 from typing import NamedTuple
 
-from gearmesh.model.friction import Pair, pairs_in_contact
+from gearmesh.model.friction import Pair, pairs_in_contact, pitch_offset
 from gearmesh.model.problem import Problem
-from gearmesh.model.stiffness import PITCH_PHASE, switch_phases
+from gearmesh.model.stiffness import PITCH_PHASE, path_places, switch_phases
 
 
 class Segment(NamedTuple):
@@ -35,27 +35,42 @@ class Segment(NamedTuple):
     gamma: float
 
 
-def segments(problem: Problem) -> tuple[Segment, ...]:
-    """Cut a mesh period of `problem` at the jumps of C(t) and gamma(t).
+def pitch_offset_of(problem: Problem) -> float:
+    """Return how far the pitch point lies behind the middle of the path, in base pitches."""
+    if problem.wheels is None:
+        return 0.0
+    wheel_3, wheel_2 = problem.wheels
+    return pitch_offset(wheel_3.teeth, wheel_2.teeth, problem.pressure_angle, problem.contact_ratio)
 
-    The rectangular wave and friction jump at the switches of C(t), friction at the pitch point too.
+
+def segments(problem: Problem) -> tuple[Segment, ...]:
+    """Cut a mesh period of `problem` at the jumps and kinks of C(t) and the jumps of gamma(t).
+
+    The rectangular wave and friction jump at the switches of C(t), as do factors of single teeth;
+    friction jumps at the pitch point too. Tables have kinks.
     """
     rubs = problem.friction_coefficient != 0.0
-    switches = rubs or problem.stiffness_harmonics == 0
-    return _cut(problem.contact_ratio, problem.initial_phase, switches, rubs)
+    terms = problem.terms
+    smooth = problem.stiffness_harmonics or terms.stiffness_fourier or terms.stiffness_table
+    switches = rubs or not smooth or bool(terms.tooth_factors)
+    offset = pitch_offset_of(problem)
+    places = [*(switch_phases(problem.contact_ratio) if switches else ())]
+    places += [PITCH_PHASE + offset] * rubs
+    places += [phase for phase, _ in terms.stiffness_table]
+    places += path_places(problem.contact_ratio, len(terms.tooth_pair_stiffness))
+    return _cut(problem.contact_ratio, problem.initial_phase, offset, tuple(places))
 
 
 @lru_cache
 def _cut(
-    contact_ratio: float, initial_phase: float, switches: bool, pitch_point: bool
+    contact_ratio: float, initial_phase: float, offset: float, places: tuple[float, ...]
 ) -> tuple[Segment, ...]:
-    places = [*(switch_phases(contact_ratio) if switches else ()), *([PITCH_PHASE] * pitch_point)]
     edges = [0.0, *sorted((place - initial_phase) % 1.0 for place in places), 1.0]
     found = []
     for start, end in pairwise(edges):
         if start < end:
             middle = (0.5 * (start + end) + initial_phase) % 1.0
-            pairs = tuple(pairs_in_contact(middle, contact_ratio))
+            pairs = tuple(pairs_in_contact(middle, contact_ratio, offset))
             gamma = sum(pair.gamma for pair in pairs)
             double = len(pairs) == 2
             found.append(Segment(start, end, end - start, middle, pairs, double, gamma))

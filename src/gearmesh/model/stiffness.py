@@ -6,7 +6,13 @@ t = 0 in eq. (4). Two pairs of teeth carry the load (C_max) while the phase is w
 C_max and C_min.
 """
 
+from collections.abc import Sequence
+from itertools import pairwise
+from typing import NamedTuple
+
 import numpy as np
+
+TURN = 2.0 * np.pi
 
 PITCH_PHASE = 0.5
 """Mesh phase at which a single pair of equal wheels touches at the pitch point."""
@@ -21,6 +27,39 @@ def switch_phases(contact_ratio: float) -> tuple[float, float]:
     """Return the phases in <0; 1> where C falls to C_min and where it rises to C_max again."""
     half = 0.5 * duty(contact_ratio)
     return half, 1.0 - half
+
+
+class Touching(NamedTuple):
+    """A pair of teeth in contact: its number, and how far it is behind the middle of its path.
+
+    The middle of the path of pair p is at the phase p + 1/2; `place` counts base pitches, which
+    are mesh periods.
+    """
+
+    number: int
+    place: float
+
+
+def touching_pairs(phase: float, contact_ratio: float) -> list[Touching]:
+    """Return the pairs of teeth in contact at `phase`, the one that entered last first.
+
+    The path of a pair is `contact_ratio` base pitches long, 1 to 3.
+    """
+    since, half = phase - round(phase), 0.5 * duty(contact_ratio)
+    found = []
+    for shift in (-1.5, -0.5, 0.5, 1.5):
+        inside = -since < half + (shift + 0.5) if shift < 0.0 else since < half - (shift - 0.5)
+        if inside:
+            found.append(Touching(round(phase) - round(shift + 0.5), since + shift))
+    if not found:  # one pair follows the other at once
+        found.append(Touching(round(phase), since - 0.5))
+    return found
+
+
+def path_places(contact_ratio: float, points: int) -> list[float]:
+    """Return the mesh phases of `points` at equal distances along the path of pair 0."""
+    start = PITCH_PHASE - 0.5 * contact_ratio
+    return [start + contact_ratio * i / (points - 1) for i in range(points)]
 
 
 def in_double_contact(phase: float | np.ndarray, contact_ratio: float) -> np.ndarray:
@@ -42,6 +81,21 @@ def rectangular(
     rectangular wave of duty epsilon - 1 centred on phase 0.
     """
     return np.where(in_double_contact(phase, contact_ratio), maximum, minimum)
+
+
+def line_through(knots: Sequence[tuple[float, float]], place: float) -> tuple[float, float]:
+    """Return the value at `place` and the slope of what is linear between `knots`.
+
+    Parameters
+    ----------
+    knots : sequence of (place, value)
+        In the order of the places; `place` lies between the first and the last.
+    """
+    for (low, before), (high, after) in pairwise(knots):
+        if low <= place <= high and low < high:
+            slope = (after - before) / (high - low)
+            return before + slope * (place - low), slope
+    raise ValueError(f"{place} is outside the table")
 
 
 def fourier_amplitudes(

@@ -17,7 +17,7 @@ from dataclasses import dataclass, replace
 from functools import cache, cached_property
 from pathlib import Path
 
-from gearmesh.data import batches, casefile, manifest, paths, provenance
+from gearmesh.data import casefile, manifest, paths, provenance
 from gearmesh.data.paths import Places
 from gearmesh.errors import InputError
 from gearmesh.identification import layout
@@ -63,7 +63,7 @@ class Plan:
     @cached_property
     def letters(self) -> dict[str, list[Case]]:
         """The cases of each letter of Tab. 1."""
-        return batches.by_letter(self.study.cases)
+        return {letter: self.study.of_letter(letter) for letter in self.study.letters}
 
     @cached_property
     def ledger(self) -> list[Claim]:
@@ -211,17 +211,25 @@ _COMMITTED: dict[str, Callable[[], list[Path]]] = {
     "fig1": lambda: [_STYLE],
     "identified_figures": lambda: [_STYLE, layout.IDENTIFIED, layout.SETTINGS],
     "study_figures": lambda: [_STYLE],
-    "notebook_pages": lambda: [_TEMPLATES / "notebook.html.j2", _TEMPLATES / "report.css"],
+    "why": lambda: [
+        *(paths.notebook(paths.WHY), _STYLE),
+        *(_TEMPLATES / name for name in ("points.html.j2", "parts.html.j2")),
+    ],
+    "notebook_pages": lambda: [
+        _TEMPLATES / name for name in ("notebook.html.j2", "base.html.j2", "report.css")
+    ],
     "explorer": lambda: [
-        *(_TEMPLATES / name for name in ("explorer.html.j2", "explorer.css", "report.css")),
+        *(
+            _TEMPLATES / name
+            for name in ("explorer.html.j2", "base.html.j2", "explorer.css", "report.css")
+        ),
         *sorted(_SCRIPTS.rglob("*.js")),
     ],
     "report": lambda: [
         *_templates(),
-        *(paths.CAPTIONS / f"{name}.rst" for name in paths.FIGURE_NAMES),
+        *(paths.CAPTIONS / f"{name}.rst" for name in (*paths.FIGURE_NAMES, *paths.WHY_FIGURES)),
         *(layout.IDENTIFIED, layout.SETTINGS, paths.CLAIMS),
     ],
-    "study_report": _templates,
     "box": lambda: [paths.CLAIMS],
     "identified": lambda: [layout.SETTINGS, paths.CLAIMS],
     "identification_notebook": lambda: [
@@ -245,7 +253,10 @@ _FACTS: dict[str, Callable[..., object]] = {
     ),
     **{
         stage: lambda plan: (plan.study.title, plan.pair, plan.mechanisms)
-        for stage in ("branches", "basins", "sweeps", "lyapunov", "special_curves")
+        for stage in (
+            *("branches", "basins", "sweeps", "bands", "lyapunov", "special_curves"),
+            *("why",),
+        )
     },
     "figure": lambda plan, name: (
         *(plan.study.title, plan.pair, plan.study.time_courses),
@@ -256,7 +267,6 @@ _FACTS: dict[str, Callable[..., object]] = {
     "ledger": lambda plan: plan.ledger,
     "explorer": lambda plan: _statements(plan.study),
     "report": lambda plan: (_statements(plan.study), _verified(plan.places)),
-    "study_report": lambda plan: _statements(plan.study),
     "crate": lambda plan: (
         _statements(plan.study),
         [(str(path), provenance.digest([path])) for path in inputs(plan.study)],

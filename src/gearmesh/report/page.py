@@ -1,12 +1,14 @@
 """The report: one page that opens from disk.
 
-It needs no network: styles are within it, equations are MathML, figures and the pages of the
-notebooks are linked by relative paths. `render` makes the page from its arguments; `write_report`
-reads the results of a run and writes it.
+It needs no network and no other file: styles and figures are within it, equations are MathML. It
+links to the explorer and to the pages of the notebooks beside it. `render` makes the page of the
+paper's study and `render_study` that of a study of one's own, from their arguments; `write_report`
+reads the results of a run and writes either.
 """
 
-import os
-from collections.abc import Iterable, Sequence
+import base64
+from collections import Counter
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -18,25 +20,56 @@ from gearmesh.data.paths import Places
 from gearmesh.data.writing import write_text
 from gearmesh.identification import layout, table
 from gearmesh.identification.settings import load_settings
-from gearmesh.report import description, verification
+from gearmesh.report import description, verification, why
+from gearmesh.report.explorer import views
 from gearmesh.report.identified import section
 from gearmesh.report.presentation import environment
 from gearmesh.reproduction.claims import Entry, load_ledger, read_entries, verdict
 from gearmesh.reproduction.equations import EQUATIONS
+from gearmesh.solvers.response import STATUSES
 from gearmesh.study.cases import Study
 
 
 @dataclass(frozen=True, slots=True)
 class Figure:
-    """A figure on the page; places are relative to it."""
+    """A figure on the page.
+
+    Attributes
+    ----------
+    name, title, caption : str
+        Its id, its number and what it shows.
+    picture : str
+        The picture as the address of an image.
+    notebook : str, optional
+        Page of the notebook that draws it.
+    view : str, optional
+        The view of the explorer that belongs to it.
+    entries : tuple of Entry
+        The claims that it shows.
+    """
 
     name: str
     title: str
     caption: str
-    svg: str
-    png: str
-    notebook: str | None
-    entries: tuple[Entry, ...]
+    picture: str
+    notebook: str | None = None
+    view: str | None = None
+    entries: tuple[Entry, ...] = ()
+
+
+STUDY_FIGURES = {
+    "response": (
+        "Response curves",
+        "Greatest and least relative motion y in the mesh over the kept revolutions, against the "
+        "mesh frequency ν_s. White is normal mesh, yellow contact loss, red inverse mesh.",
+    ),
+    "bifurcation": (
+        "Bifurcation diagrams",
+        "Every local extremum of y in the kept revolutions: few points at a frequency mean a "
+        "periodic motion, a cloud one that does not repeat.",
+    ),
+}
+"""Titles and captions of the figures of a study of one's own."""
 
 
 def write_report(study: Study, places: Places) -> None:
@@ -54,26 +87,56 @@ def write_report(study: Study, places: Places) -> None:
     InputError
         If a result is missing or damaged.
     """
+    resonance = open_dataset(places.resonance)
+    if not study.claims:
+        pictures = {name: embedded(places.figure_files(name)[0]) for name in STUDY_FIGURES}
+        write_text(places.report, render_study(study, resonance, pictures))
+        return
     captions = {
         name: (paths.CAPTIONS / f"{name}.rst").read_text(encoding="utf-8")
         for name in paths.FIGURE_NAMES
     }
-    resonance = open_dataset(places.resonance)
+    pictures = {name: embedded(places.figure_files(name)[1]) for name in captions}
     page = render(
-        *(study, read_entries(places.ledger), resonance, captions),
-        *(_identified(study), verification.section(places)),
+        *(study, read_entries(places.ledger), resonance, captions, pictures),
+        *(_identified(study), verification.section(places), _why(study, places)),
     )
     write_text(places.report, page)
 
 
+def _why(study: Study, places: Places) -> str:
+    """Return the section about orbits and attractors; nothing if the study follows none."""
+    if study.plan.mechanisms is None:
+        return ""
+    figures = {
+        name: Figure(
+            name,
+            title,
+            " ".join((paths.CAPTIONS / f"{name}.rst").read_text(encoding="utf-8").split()),
+            embedded(places.figure_files(name)[1]),
+            f"notebooks/{paths.WHY}.html",
+            views.FIGURES[name],
+        )
+        for name, title in why.TITLES.items()
+    }
+    return why.section(study, places, figures)
+
+
+def embedded(picture: Path) -> str:
+    """Return a picture as an address that holds it."""
+    kind = "svg+xml" if picture.suffix == ".svg" else "png"
+    return f"data:image/{kind};base64,{base64.b64encode(picture.read_bytes()).decode()}"
+
+
 def _identified(study: Study) -> str:
     """Return the findings about the open parameters as HTML."""
+    drawn = layout.reported(Places(study.name))
     return section(
         table.read(),
         load_ledger(paths.CLAIMS),
         load_settings(layout.SETTINGS),
         study.pair,
-        {name: path.name for name, path in layout.reported(Places(study.name)).items()},
+        {name: embedded(path.with_suffix(".svg")) for name, path in drawn.items()},
     )
 
 
@@ -81,11 +144,13 @@ def render(
     study: Study,
     entries: Sequence[Entry],
     resonance: xr.Dataset,
-    captions: dict[str, str],
+    captions: Mapping[str, str],
+    pictures: Mapping[str, str],
     identified: str = "",
     verified: str = "",
+    orbits: str = "",
 ) -> str:
-    """Return the page.
+    """Return the page of the paper's study.
 
     Parameters
     ----------
@@ -95,54 +160,65 @@ def render(
         The ledger with what was found.
     resonance : xarray.Dataset
         Status and sensitivity of every case.
-    captions : dict of str to str
-        Caption of each figure.
+    captions, pictures : mapping of str to str
+        Caption of each figure, and its picture as the address of an image.
     identified : str
         HTML of the findings about the open parameters.
     verified : str
         HTML of what `make verify` found.
+    orbits : str
+        HTML of the section about orbits and attractors.
     """
-    return (
-        environment()
-        .get_template("report.html.j2")
-        .render(
-            study=study,
-            counts=verdict(entries),
-            entries=entries,
-            figures=[
-                _figure(Places(study.name), name, caption, entries)
-                for name, caption in captions.items()
-            ],
-            notebook_of=_notebook_of,
-            equations=EQUATIONS,
-            stated=list(description.parameters(study)),
-            derived=list(description.derived(study)),
-            identified=identified,
-            verified=verified,
-            computation=list(description.computation(study, resonance)),
-            sensitivity=list(_sensitivity(resonance)),
-        )
+    figures = [_figure(name, captions[name], pictures[name], entries) for name in captions]
+    template = environment().get_template("report.html.j2")
+    return template.render(
+        study=study,
+        counts=verdict(entries),
+        entries=entries,
+        figures=figures,
+        titles={figure.name: figure.title for figure in figures if figure.notebook},
+        views=views.CLAIMS,
+        equations=EQUATIONS,
+        stated=description.parameters(study),
+        derived=description.derived(study),
+        identified=identified,
+        verified=verified,
+        orbits=orbits,
+        computation=list(description.computation(study, resonance)),
+        sensitivity=list(_sensitivity(resonance)),
     )
 
 
-def _relative(places: Places, target: Path) -> str:
-    return Path(os.path.relpath(target, places.report.parent)).as_posix()
+def render_study(study: Study, resonance: xr.Dataset, pictures: Mapping[str, str]) -> str:
+    """Return the page of a study of one's own; it does not speak of the paper.
+
+    Parameters
+    ----------
+    study : Study
+        Parameters and the plan of cases.
+    resonance : xarray.Dataset
+        Status of every case.
+    pictures : mapping of str to str
+        The pictures of `STUDY_FIGURES`, as addresses of images.
+    """
+    template = environment().get_template("study.html.j2")
+    return template.render(
+        study=study,
+        figures=[Figure(name, *STUDY_FIGURES[name], picture) for name, picture in pictures.items()],
+        parameters=description.parameters(study),
+        variants=[_row(resonance.sel(variant=name)) for name in resonance["variant"].values],
+        computation=list(description.computation(study, resonance)),
+    )
 
 
-def _notebook_of(figure: str) -> str | None:
-    """Return the page of the notebook that checks the claims of `figure`, from the report."""
-    return f"notebooks/{figure}.html" if figure in paths.NOTEBOOK_NAMES else None
-
-
-def _figure(places: Places, name: str, caption: str, entries: Iterable[Entry]) -> Figure:
-    png, svg = places.figure_files(name)
+def _figure(name: str, caption: str, picture: str, entries: Iterable[Entry]) -> Figure:
     return Figure(
         name=name,
         title=f"Fig. {name.removeprefix('fig')}",
         caption=" ".join(caption.split()),
-        svg=_relative(places, svg),
-        png=_relative(places, png),
-        notebook=_notebook_of(name),
+        picture=picture,
+        notebook=f"notebooks/{name}.html" if name in paths.NOTEBOOK_NAMES else None,
+        view=views.FIGURES.get(name),
         entries=tuple(entry for entry in entries if entry.figure == name),
     )
 
@@ -157,3 +233,17 @@ def _sensitivity(resonance: xr.Dataset) -> Iterable[tuple[str, int, int, float]]
             rest = course["y_max_error_rel"].values[computed & ~sensitive]
             worst = float(rest.max()) if rest.size else float("nan")
             yield str(name), int(sensitive.sum()), int(computed.sum()), worst
+
+
+def _row(curve: xr.Dataset) -> dict[str, object]:
+    """Return the results of one variant."""
+    counts = Counter(int(flag) for flag in curve["status"].values)
+    failed = {STATUSES[flag]: number for flag, number in sorted(counts.items()) if flag > 0}
+    return {
+        "name": str(curve["variant"].item()),
+        "computed": sum(number for flag, number in counts.items() if flag >= 0),
+        "failed": failed,
+        "sensitive": int((curve["sensitive"].values == 1).sum()),
+        "y_max": float(curve["y_max_rel"].max()),
+        "y_min": float(curve["y_min_rel"].min()),
+    }

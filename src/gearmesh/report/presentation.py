@@ -110,6 +110,19 @@ def _symbol(match: re.Match[str]) -> str:
     return f'<span style="white-space: nowrap">{letter}-{LOOKS[where].symbol}{multiple}</span>'
 
 
+def quantity(value: float | tuple[Any, ...], unit: str) -> str:
+    """Write the value of a parameter with its unit."""
+    if isinstance(value, tuple):
+        harmonics = [f"({number(c[0])}, {number(c[1])})" for c in value if isinstance(c, tuple)]
+        if harmonics:
+            return f"{', '.join(harmonics)} {unit}"
+        numbers = dict.fromkeys(item for item in value if not isinstance(item, tuple))
+        return ", ".join(quantity(item, unit) for item in numbers) or "none"
+    if unit == "rad":
+        return f"{number(math.degrees(value))}°"
+    return number(value) + ("" if unit == "1" else f" {unit.replace('*', ' ')}")
+
+
 @cache
 def environment() -> jinja2.Environment:
     """Return the environment of the templates: it escapes all values and refuses missing ones."""
@@ -121,7 +134,7 @@ def environment() -> jinja2.Environment:
         lstrip_blocks=True,
     )
     made.filters.update(number=number, found=found, expected=expected, typeset=typeset)
-    made.filters["log10"] = math.log10
+    made.filters.update(quantity=quantity, log10=math.log10)
     made.globals["status_labels"] = STATUS_LABELS
     return made
 

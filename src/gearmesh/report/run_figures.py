@@ -11,11 +11,13 @@ from matplotlib.figure import Figure
 
 from gearmesh.data.writing import replacing
 from gearmesh.errors import InputError
+from gearmesh.interface.spectra import spectrum
 from gearmesh.reproduction.figures import palette
 from gearmesh.reproduction.figures.canvas import STYLE, WIDTH, V, shade_regions, styled
 from gearmesh.reproduction.figures.orbit import last_periods, scale, switches
 
 PERIODS_SHOWN = 5
+HIGHEST_ORDER = 6.0
 FORMATS = (".png", ".svg", ".pdf")
 
 _LOOKS = ((palette.BLUE, "-"), (palette.RED, "--"))
@@ -23,7 +25,7 @@ _LOOKS = ((palette.BLUE, "-"), (palette.RED, "--"))
 
 @styled
 def draw(runs: Sequence[xr.Dataset]) -> Figure:
-    """Draw runs: phase plane, stroboscopic points and the time course of the last periods.
+    """Draw runs: phase plane, time course and, where they are known, forces and spectrum.
 
     Parameters
     ----------
@@ -34,17 +36,22 @@ def draw(runs: Sequence[xr.Dataset]) -> Figure:
     -------
     Figure
         Left: the phase plane of the kept revolution with its stroboscopic points. Right: y and
-        C(t) over the last mesh periods.
+        C(t) over the last mesh periods. Below, if all runs hold the tooth force: its spectrum, and
+        its time course.
     """
-    figure = Figure(figsize=(WIDTH, 3.6), layout="constrained")
-    plane, times = figure.subplots(1, 2, width_ratios=(1.0, 1.4))
+    loaded = all("force_normal" in run for run in runs)
+    figure = Figure(figsize=(WIDTH, 6.4 if loaded else 3.6), layout="constrained")
+    axes = figure.subplots(2 if loaded else 1, 2, width_ratios=(1.0, 1.4), squeeze=False)
+    plane, times = axes[0]
     letters = ("",) if len(runs) == 1 else ("A: ", "B: ")
     for run, letter, (colour, line) in zip(runs, letters, _LOOKS, strict=False):
         name = f"{letter}{run.attrs['variant']}, $\\nu_s$ = {run.attrs['nu_s']:g}"
         _draw_plane(plane, run, colour, line)
         _draw_times(times, run, name, colour, line)
-    for axes in (plane, times):  # shading the regions must not change the limits
-        axes.set(xlim=axes.get_xlim(), ylim=axes.get_ylim())
+        if loaded:
+            _draw_loads(axes[1, 0], axes[1, 1], run, colour, line)
+    for each in (plane, times):  # shading the regions must not change the limits
+        each.set(xlim=each.get_xlim(), ylim=each.get_ylim())
     backlash = scale(runs[0]).backlash
     shade_regions(plane, backlash, along="x")
     shade_regions(times, backlash)
@@ -54,6 +61,8 @@ def draw(runs: Sequence[xr.Dataset]) -> Figure:
     times.set_title(f"last {PERIODS_SHOWN} mesh periods; $C(t)$ rises at ▲ (A), falls at ▼ (B)")
     times.set_xlabel("time $t/T$ in mesh periods")
     times.set_ylabel("$y$ in $y_{st}$")
+    if loaded:
+        _label_loads(axes[1, 0], axes[1, 1])
     figure.legend(*times.get_legend_handles_labels(), loc="outside upper center", ncols=2)
     return figure
 
@@ -74,6 +83,31 @@ def _draw_times(axes: Axes, run: xr.Dataset, name: str, colour: str, line: str) 
         marker = "^" if letter == "A" else "v"
         axes.plot(places, course["y_rel"].values[where], ls="none", marker=marker, ms=3.5, c=colour)
     axes.margins(x=0.0, y=0.1)
+
+
+def _draw_loads(orders: Axes, forces: Axes, run: xr.Dataset, colour: str, line: str) -> None:
+    """Draw the spectrum of the tooth force, and its time course."""
+    found = spectrum(run, "force_normal").sel(order=slice(0.0, HIGHEST_ORDER))
+    orders.plot(found["order"][1:], found["force_normal"][1:], color=colour, ls=line, lw=0.8)
+    course = last_periods(run, min(PERIODS_SHOWN, scale(run).kept_periods))
+    factor = float(run["dynamic_factor"])
+    label = f"$K_v$ = {factor:.3g}"
+    forces.plot(course["period"], course["force_normal"], color=colour, ls=line, label=label)
+    forces.margins(x=0.0, y=0.1)
+
+
+def _label_loads(orders: Axes, forces: Axes) -> None:
+    orders.set_title("spectrum of the tooth force")
+    orders.set_xlabel("order of the mesh frequency")
+    orders.set_ylabel("amplitude in N")
+    orders.set(yscale="log", xlim=(0.0, HIGHEST_ORDER + 0.2))
+    low, high = orders.get_ylim()
+    orders.set_ylim(max(low, high * 1e-6), high)
+    forces.set_title("tooth force: elastic and damping force")
+    forces.set_xlabel("time $t/T$ in mesh periods")
+    forces.set_ylabel("tooth force in N")
+    forces.axhline(0.0, color="0.6", lw=0.6)
+    forces.legend(loc="upper right")
 
 
 def save(figure: Figure, path: Path) -> None:

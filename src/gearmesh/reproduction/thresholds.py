@@ -14,6 +14,7 @@ from gearmesh.dynamics.refinement import Batch
 from gearmesh.dynamics.response_curves import FailedRun, Jump, ResponseCurve
 from gearmesh.model.variants import variant
 from gearmesh.reproduction.frequencies import FIG_4, FIRST, FIRST_JUMP, LAST
+from gearmesh.reproduction.mechanisms.bands import RANGES, band
 from gearmesh.solvers.response import MAXIMUM, MINIMUM, Response
 from gearmesh.study.pair import Pair
 
@@ -162,6 +163,7 @@ def _lubricant_searches(curve: ResponseCurve, pair: Pair) -> Searches:
             for name, nu in (("first", first()), ("second", second()))
         },
         "maxima_spread": lambda: _spread_below_and_above(curve, maxima),
+        "band": lambda: _band(curve, maxima, second()),
         "strobe_spread": lambda: {
             f"{nu:.2f}": spread
             for nu, spread in zip(FIG_4, stroboscopic(np.array(FIG_4)).tolist(), strict=True)
@@ -176,6 +178,13 @@ def _spread_below_and_above(curve: ResponseCurve, spread: Batch) -> dict[str, fl
         "below": float(np.median(spread(below))),
         "above": float(np.median(spread(curve.scan(1.1, LAST)))),
     }
+
+
+def _band(curve: ResponseCurve, spread: Batch, end: float | None) -> dict[str, float]:
+    """Return how orderly the band of extrema is, see `gearmesh.reproduction.mechanisms.bands`."""
+    nu = np.concatenate([curve.scan(low, high) for low, high in RANGES])
+    high, low = curve.of(curves.y_max)(nu), curve.of(curves.y_min)(nu)
+    return band(nu, high, low, spread(nu), np.nan if end is None else end)
 
 
 def loss_gained(curve: ResponseCurve, jump: float) -> float:

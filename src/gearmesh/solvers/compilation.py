@@ -57,7 +57,7 @@ def persistent(build: Callable[[str, bool], Any]) -> Callable[..., Any]:
     def call(*arguments: object) -> object:
         try:
             kernel = compiled(True)
-            if kernel.signatures:
+            if kernel.overloads:
                 return kernel(*arguments)
             with _alone(kernel.stats.cache_path, build.__name__):
                 return kernel(*arguments)

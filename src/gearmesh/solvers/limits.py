@@ -17,10 +17,33 @@ _MOST_PER_PERIOD = 1e6
 
 def highest_frequency(problem: Problem) -> float:
     """Return a bound of the natural frequencies in contact: the trace of the coupled stiffness."""
-    bearing = math.sqrt(problem.bearing_stiffness / problem.body_mass)
-    # With a contact ratio of 1 there never are two pairs.
-    stiffest = problem.stiffness_max if problem.contact_ratio > 1.0 else problem.stiffness_min
-    return math.sqrt(stiffest * (1.0 + 2.0 / problem.body_mass) + bearing**2)
+    if problem.wheels is None:
+        bearing = math.sqrt(problem.bearing_stiffness / problem.body_mass)
+        return math.sqrt(_stiffest(problem) * (1.0 + 2.0 / problem.body_mass) + bearing**2)
+    stiffnesses = [c / w.body_mass for w in problem.wheels for c in w.bearing_stiffness]
+    return math.sqrt(_stiffest(problem) * _mobility(problem) + max(stiffnesses))
+
+
+def _mobility(problem: Problem) -> float:
+    """Return the acceleration of y that a force of 1 in the mesh gives."""
+    return 1.0 + sum(1.0 / wheel.body_mass for wheel in problem.both_wheels)
+
+
+def _stiffest(problem: Problem) -> float:
+    """Return the greatest mesh stiffness, or a bound of it."""
+    terms = problem.terms
+    if terms.tooth_pair_stiffness:
+        stiffest = math.ceil(problem.contact_ratio) * max(terms.tooth_pair_stiffness)
+    elif terms.stiffness_table:
+        stiffest = max(value for _, value in terms.stiffness_table)
+    else:
+        # With a contact ratio of 1 there never are two pairs.
+        doubled = problem.contact_ratio > 1.0
+        stiffest = problem.stiffness_max if doubled else problem.stiffness_min
+        stiffest += sum(abs(c) + abs(s) for c, s in terms.stiffness_fourier)
+    for factor in terms.tooth_factors:
+        stiffest *= max(1.0, factor.factor)
+    return stiffest
 
 
 def longest_step(problem: Problem) -> float:
@@ -50,6 +73,17 @@ def most_steps(problem: Problem) -> float:
 def _fastest_rate(problem: Problem) -> float:
     """Return the sum of the fastest rates of the problem: oscillation, decay and excitation."""
     slopes = (k1 + 2.0 * k2 + 3.0 * k3 for k1, k2, k3 in (problem.material, problem.lubricant))
-    decay = max(slopes) * (1.0 + 2.0 / problem.body_mass)
-    harmonics = max(problem.stiffness_harmonics, len(problem.deviation))
-    return highest_frequency(problem) + decay + harmonics * problem.nu
+    decay = max(slopes) * _mobility(problem)
+    terms = problem.terms
+    orders: list[float] = [
+        problem.stiffness_harmonics,
+        len(problem.deviation),
+        len(terms.stiffness_fourier),
+    ]
+    for harmonics in (
+        terms.torque_harmonics_3,
+        terms.torque_harmonics_2,
+        terms.backlash_harmonics,
+    ):
+        orders += [harmonic.order for harmonic in harmonics]
+    return highest_frequency(problem) + decay + max(orders) * problem.nu

@@ -54,7 +54,9 @@ class Samples:
     """Time course of the kept revolutions; every array has shape (n_samples,).
 
     `y`, `v` and `a` are y, dy/dtau_s and d2y/dtau_s2, the stiffnesses are in C_s, the forces in
-    F_st, `regime` as in `gearmesh.model.contact`.
+    F_st, `regime` as in `gearmesh.model.contact`. `force_normal` is the elastic and the damping
+    force, `transmission_error` the sum of R_b phi of both wheels, and `force_bearing_3` and
+    `force_bearing_2` what the bodies exert on their bearings along the mesh line.
     """
 
     time: np.ndarray
@@ -64,7 +66,11 @@ class Samples:
     stiffness: np.ndarray
     modified_stiffness: np.ndarray
     force_dynamic: np.ndarray
+    force_normal: np.ndarray
     force_friction: np.ndarray
+    force_bearing_3: np.ndarray
+    force_bearing_2: np.ndarray
+    transmission_error: np.ndarray
     regime: np.ndarray
 
 

@@ -9,7 +9,6 @@ deviation and the truncated Fourier series of the stiffness.
 from collections.abc import Sequence
 
 from gearmesh.model.problem import Problem
-from gearmesh.solvers.reduced import runs as reduced
 from gearmesh.solvers.response import Response
 
 _CHUNK = 256
@@ -42,6 +41,9 @@ def simulate(
         In the order of `problems`. A run that fails has a status other than ``"ok"``. Samples of
         runs that were solved together are pieces of one array: copy those that you keep.
     """
+    # numba is loaded at the first run: code that only reads results imports this module, too.
+    from gearmesh.solvers.reduced import runs as reduced
+
     responses: dict[int, Response] = {}
     reducible = [i for i, problem in enumerate(problems) if reduced.is_reducible(problem)]
     for first in range(0, len(reducible), _CHUNK):

@@ -1,6 +1,6 @@
 """A study: a pair, its variants and mesh frequencies, and the cases that follow from them."""
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
@@ -82,6 +82,9 @@ class Plan(Section):
     mechanisms: Mechanisms | None = Field(
         None, description="orbits and attractors behind the response curves; none if left out"
     )
+    loads: bool = Field(
+        False, description="whether the files hold tooth forces and transmission errors, too"
+    )
     case_files: bool = Field(
         True, description="whether cases without a time course have files of their own too"
     )
@@ -146,12 +149,15 @@ class Case:
         Whether its file holds the time course.
     direction : {"up", "down"}, optional
         In a sweep, the direction in which runs follow one another.
+    loads : bool
+        Whether its file holds what engineers report of a run.
     """
 
     variant: Variant
     nu: float
     time_course: bool = False
     direction: str | None = None
+    loads: bool = False
 
 
 @dataclass(frozen=True)
@@ -213,14 +219,23 @@ class Study:
 
         A frequency with a time course is a case of its variant even if it is not on the grid.
         """
-        cases = []
-        for chosen, nus in self.plan.frequencies():
+        return tuple(self._cases(self.plan.frequencies()))
+
+    @property
+    def letters(self) -> list[str]:
+        """The letters of Tab. 1 of which the study has variants."""
+        return list(dict.fromkeys(variant.letter for variant, _ in self.plan.frequencies()))
+
+    def of_letter(self, letter: str) -> list[Case]:
+        """Return the cases of a letter of Tab. 1, in their order."""
+        plan = self.plan.frequencies()
+        return list(self._cases(part for part in plan if part[0].letter == letter))
+
+    def _cases(self, plan: Iterable[tuple[Variant, tuple[float, ...]]]) -> Iterator[Case]:
+        for chosen, nus in plan:
             courses = set(self.time_courses.get(chosen.name, ()))
-            cases += [
-                Case(chosen, nu, nu in courses, self.plan.direction)
-                for nu in sorted({*nus, *courses})
-            ]
-        return tuple(cases)
+            for nu in sorted({*nus, *courses}):
+                yield Case(chosen, nu, nu in courses, self.plan.direction, self.plan.loads)
 
     def has_file(self, case: Case) -> bool:
         """Return whether a case has a file of its own; one with a time course always has."""

@@ -13,6 +13,7 @@ from typing import Any, NamedTuple, Self
 from pydantic import PrivateAttr, model_validator
 
 from gearmesh.model import stiffness
+from gearmesh.model.involute import Involute
 from gearmesh.model.problem import Problem
 from gearmesh.model.variants import Variant
 from gearmesh.study.alternatives import (
@@ -242,14 +243,8 @@ class Pair(Parameters):
 
     @property
     def standard_contact_ratio(self) -> float:
-        """Contact ratio of two standard wheels (addendum m_n) with Z teeth and angle α.
-
-        The path of contact over the base pitch: ε = 2 (√(r_a² − r_b²) − r sin α)/(π m_n cos α).
-        """
-        pitch_radius, angle = self.teeth / 2, self.pressure_angle
-        tip_radius, base_radius = pitch_radius + 1, pitch_radius * math.cos(angle)
-        path = 2 * (math.sqrt(tip_radius**2 - base_radius**2) - pitch_radius * math.sin(angle))
-        return path / (math.pi * math.cos(angle))
+        """Contact ratio of two standard wheels (addendum m_n) with Z teeth and angle α."""
+        return Involute(self.module, (self.teeth, self.teeth), self.pressure_angle).contact_ratio
 
     def problem(self, variant: Variant, nu: float) -> Problem:
         """State one run in static deflections, 1/Ω_s and static forces.

@@ -8,9 +8,10 @@ import math
 import re
 from functools import cache
 from numbers import Real
-from typing import Any, SupportsFloat
+from typing import TYPE_CHECKING, Any, SupportsFloat
 
-import pint
+if TYPE_CHECKING:
+    import pint
 
 _NUMBER = r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?"
 _POWER = r"(?:\s*(?:\^|\*\*)\s*[+-]?\d|[²³])?"
@@ -37,10 +38,20 @@ _NAMES = {
     "kg*m^2": "an inertia",
 }
 
+COMMON = {
+    ("deg", "rad"): 0.017453292519943295,
+    ("um", "mm"): 0.001,
+    ("N s/mm", "N*s/mm"): 1.0,
+    ("N s^2/mm", "kg"): 1000.0,
+}
+"""Factors between units that most studies state: pint takes as long to load as all else."""
+
 
 @cache
 def registry() -> "pint.UnitRegistry[float]":
     """Return the only registry of units; it is built on first use, because that takes a moment."""
+    import pint
+
     return pint.UnitRegistry()
 
 
@@ -149,6 +160,16 @@ def _convert(number: float, given: str, unit: str) -> float:
     """Convert between units of the same kind (an angle is no plain number)."""
     if unit == "1":
         raise ValueError(f"unit '{given}' where none belongs; expected: {wanted(unit)}")
+    factor = 1.0 if given == unit else COMMON.get((given, unit))
+    if factor is None:
+        factor = factor_of(given, unit)
+    return _finite(number * factor, unit)
+
+
+def factor_of(given: str, unit: str) -> float:
+    """Return the factor between two units, as pint has it."""
+    import pint
+
     units = registry()
     try:
         source = units.parse_units(given.replace("°", "deg").replace("·", "*"))
@@ -162,4 +183,4 @@ def _convert(number: float, given: str, unit: str) -> float:
         raise ValueError(f"unit '{given}' cannot be read; expected: {wanted(unit)}") from None
     if root != target_root:
         raise ValueError(f"unit '{given}' is of another kind; expected: {wanted(unit)}")
-    return _finite(number * (factor / target_factor), unit)
+    return float(factor / target_factor)

@@ -16,6 +16,7 @@ from gearmesh.data.paths import Places
 from gearmesh.errors import InputError
 from gearmesh.model.variants import Variant
 from gearmesh.pipeline.messages import say
+from gearmesh.solvers.response import Response
 from gearmesh.study.cases import Case, Study
 
 CHUNK = 64
@@ -27,8 +28,10 @@ EVERY = 2.0
 
 def cases(study: Study, places: Places, letter: str) -> list[Path]:
     """Bring the case files and the batch file of a letter up to date."""
-    wanted = batches.by_letter(study.cases)[letter]
-    files = {case: places.case(case.variant.name, case.nu) for case in wanted}
+    wanted = study.of_letter(letter)
+    files = {
+        case: places.case(case.variant.name, case.nu) for case in wanted if study.has_file(case)
+    }
     records = _kept(study, places, files, places.manifest(f"cases-{letter}"))
     kept = len(records)
     if study.plan.direction:
@@ -44,7 +47,7 @@ def cases(study: Study, places: Places, letter: str) -> list[Path]:
             printed = time.monotonic()
     batch = places.batch(letter)
     batches.write_batch(batch, study.pair, wanted, [records[case] for case in wanted])
-    written = [file for case, file in files.items() if study.has_file(case)]
+    written = list(files.values())
     _remove_others(places, letter, written)
     counts = f"{len(wanted) - kept} computed, {kept} kept"
     say(f"{letter}: {counts}{f', {failed} not integrated' if failed else ''}")
@@ -107,17 +110,17 @@ def _sweep(study: Study, places: Places, wanted: Sequence[Case]) -> dict[Case, R
         [pair.problem(case.variant, case.nu) for case in chain] for chain in by_variant.values()
     ]
     records = {}
-    for chain, responses in zip(
-        by_variant.values(), run_chains(chains, pair.tolerance), strict=True
-    ):
+    samples = pair.samples_per_period if study.plan.loads else 0
+    found = run_chains(chains, pair.tolerance, samples)
+    for chain, responses in zip(by_variant.values(), found, strict=True):
         start = None
         for case, response in zip(chain, responses, strict=True):
-            if case.time_course:  # again, with samples
+            if case.time_course and not case.loads:  # again, with samples
                 problem = pair.problem(case.variant, case.nu)
                 if start is not None:
                     problem = replace(problem, initial_state=start)
                 [response] = simulate([problem], pair.tolerance, pair.samples_per_period)
-            records[case] = casefile.record(response, pair)
+            records[case] = _record(study, case, response)
             start = response.final_state
             if study.has_file(case):
                 path = places.case(case.variant.name, case.nu)
@@ -132,14 +135,24 @@ def _integrate(study: Study, places: Places, chunk: Sequence[Case]) -> list[Reco
 
     pair = study.pair
     problems = [pair.problem(case.variant, case.nu) for case in chunk]
-    samples = pair.samples_per_period if chunk[0].time_course else 0
+    samples = pair.samples_per_period if chunk[0].time_course or chunk[0].loads else 0
     responses = simulate(problems, pair.tolerance, samples)
-    records = [casefile.record(response, pair) for response in responses]
+    records = [
+        _record(study, case, response) for case, response in zip(chunk, responses, strict=True)
+    ]
     for case, record in zip(chunk, records, strict=True):
         if study.has_file(case):
             path = places.case(case.variant.name, case.nu)
             casefile.write_case(path, casefile.attributes(pair, case), record)
     return records
+
+
+def _record(study: Study, case: Case, response: Response) -> Record:
+    """Return what the file of a case holds."""
+    pair = study.pair
+    problem = pair.problem(case.variant, case.nu) if case.loads else None
+    columns = casefile.record(response, pair, problem)
+    return columns if case.time_course else casefile.without_time_course(columns)
 
 
 def _chunks(wanted: Sequence[Case]) -> Iterator[list[Case]]:

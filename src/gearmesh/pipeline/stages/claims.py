@@ -27,7 +27,7 @@ def ledger(study: Study, places: Places) -> list[Path]:
     from gearmesh.reproduction.claims import collect, load_ledger, verdict
 
     checks = [places.check(name) for name in CHECKED]
-    entries = collect(load_ledger(study.ledger), checks, places.ledger)
+    entries = collect(load_ledger(study.ledger), checks, places.ledger, _mechanisms(study, places))
     found: dict[str, Counter[str]] = {}
     for entry in entries:
         found.setdefault(entry.figure, Counter())[entry.status] += 1
@@ -51,3 +51,18 @@ def verdict(study: Study, places: Places) -> list[Path]:
         sys.exit(UNEXPECTED)
     write_text(places.as_expected, "All claims have the statuses that the ledger expects.\n")
     return [places.as_expected]
+
+
+def _mechanisms(study: Study, places: Places) -> dict[str, str]:
+    """Return the orbits that explain claims, none if the study follows no orbits."""
+    import json
+
+    from gearmesh.reproduction.mechanisms.explanations import mechanisms
+
+    if study.plan.mechanisms is None:
+        return {}
+    points, thresholds = (
+        json.loads(path.read_text(encoding="utf-8"))
+        for path in (places.special_points, places.thresholds)
+    )
+    return mechanisms(points, thresholds)

@@ -8,12 +8,10 @@ from gearmesh.study.cases import Study
 
 def datasets(study: Study, places: Places) -> list[Path]:
     """Make the datasets over (variant, nu) from all batches."""
-    from gearmesh.data import batches
     from gearmesh.data.datasets import write_datasets
 
-    letters = batches.by_letter(study.cases)
-    _remove_other_letters(places, set(letters))
-    files = [places.batch(letter) for letter in letters]
+    _remove_other_letters(places, set(study.letters))
+    files = [places.batch(letter) for letter in study.letters]
     write_datasets(study, files, places.resonance, places.bifurcation)
     return [places.resonance, places.bifurcation]
 

@@ -10,22 +10,26 @@ from gearmesh.study.cases import Mechanisms, Study
 def orbits(study: Study, places: Places, letter: str) -> list[Path]:
     """Follow the orbits of the variants of one letter of Tab. 1, and locate their special points.
 
-    The special points are located a second time without friction and on rigid supports.
+    Those of the damped orbits of the mesh period are located a second time without friction and on
+    rigid supports.
     """
     import json
 
     from gearmesh.data.writing import write_text
     from gearmesh.reproduction.mechanisms import tables
-    from gearmesh.reproduction.mechanisms.orbits import WITHOUT_SUPPORTS, branches
+    from gearmesh.reproduction.mechanisms.orbits import WITHOUT_SUPPORTS, branches, doubled
 
     limits = float(study.nu[0]), float(study.nu[-1])
-    pairs = [(study.pair, {}), (study.pair.replace(**WITHOUT_SUPPORTS), WITHOUT_SUPPORTS)]
+    names = _mechanisms(study).by_letter[letter]
     made, rows = [], []
-    for pair, changed in pairs:
-        for name in _mechanisms(study).by_letter[letter]:
-            found = branches(pair, name, limits)
-            rows += tables.rows(name, found, changed)
-            made += [] if changed or not found else [tables.table(name, found)]
+    for name in names:
+        single = branches(study.pair, name, limits)
+        found = [*single, *doubled(single, limits)]
+        rows += tables.rows(name, found, {})
+        made += [tables.table(name, found)] if found else []
+    simpler = study.pair.replace(**WITHOUT_SUPPORTS)
+    for name in names if letter != "a" else []:
+        rows += tables.rows(name, branches(simpler, name, limits), WITHOUT_SUPPORTS)
     dataset, points = places.orbits(letter)
     tables.write(dataset, tables.joined(made), study, "branches of orbits")
     write_text(points, json.dumps(rows))
@@ -77,6 +81,15 @@ def sweeps(study: Study, places: Places) -> list[Path]:
     return [places.mechanism("sweeps"), places.mechanism("design_map")]
 
 
+def bands(study: Study, places: Places) -> list[Path]:
+    """Measure the bands of extrema with lubricant damping after 5, 50 and 500 revolutions."""
+    from gearmesh.reproduction.mechanisms import bands, tables
+
+    found = bands.bands(study.pair, _mechanisms(study).variants)
+    tables.write(places.mechanism("bands"), found, study, "bands of extrema")
+    return [places.mechanism("bands")]
+
+
 def lyapunov(study: Study, places: Places) -> list[Path]:
     """Compute the Lyapunov exponents of the conservative variant."""
     from gearmesh.reproduction.mechanisms import exponents, tables
@@ -96,6 +109,21 @@ def special_curves(study: Study, places: Places) -> list[Path]:
     found = curves.curves(study.pair, rows)
     tables.write(places.mechanism("special_curves"), found, study, "curves of special points")
     return [places.mechanism("special_curves")]
+
+
+def why(study: Study, places: Places) -> list[Path]:
+    """Run the notebook that draws what lies behind the curves."""
+    from gearmesh.data.paths import WHY, notebook
+    from gearmesh.pipeline.notebooks import run_notebook
+
+    executed = places.executed_notebook(WHY)
+    parameters = {
+        "configuration": study.path,
+        "datasets": places.branches.parent,
+        "figures": places.figure_files(WHY)[0].parent,
+    }
+    run_notebook(notebook(WHY), executed, parameters, places.scratch)
+    return [*places.why_files, executed]
 
 
 def _mechanisms(study: Study) -> Mechanisms:

@@ -2,7 +2,7 @@
 
 from pathlib import Path
 
-from gearmesh.data.paths import NOTEBOOK_NAMES, Places
+from gearmesh.data.paths import NOTEBOOK_NAMES, WHY, Places
 from gearmesh.data.writing import write_text
 from gearmesh.study.cases import Study
 
@@ -11,7 +11,8 @@ def notebook_pages(study: Study, places: Places) -> list[Path]:
     """Write the executed notebooks as pages of the report."""
     from gearmesh.report.notebook_page import notebook_page
 
-    pages = {name: places.notebook_page(name) for name in NOTEBOOK_NAMES}
+    names = [*NOTEBOOK_NAMES, *([WHY] if study.plan.mechanisms else [])]
+    pages = {name: places.notebook_page(name) for name in names}
     for name, page in pages.items():
         write_text(page, notebook_page(places.executed_notebook(name)))
     return [*pages.values()]
@@ -28,14 +29,6 @@ def explorer(study: Study, places: Places) -> list[Path]:
 def report(study: Study, places: Places) -> list[Path]:
     """Write the report page: it opens from disk, without a network."""
     from gearmesh.report.page import write_report
-
-    write_report(study, places)
-    return [places.report]
-
-
-def study_report(study: Study, places: Places) -> list[Path]:
-    """Write the report page of a study of one's own."""
-    from gearmesh.report.study_page import write_report
 
     write_report(study, places)
     return [places.report]

@@ -1,12 +1,15 @@
 """The numbers of a study as the explorer reads them: raw bytes, and an index of what they are."""
 
 import base64
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 import xarray as xr
+
+KINDS = (*("fold", "flip", "torus", "branch_point", "grazing_front", "grazing_back", "switching"),)
+"""Kinds of special points; their places in this list stand for them."""
 
 MOST_BYTES = 3_500_000
 """Bytes of numbers in a page; a study with more keeps every second, third, … frequency."""
@@ -80,3 +83,44 @@ def diagram(resonance: xr.Dataset, bifurcation: xr.Dataset) -> dict[str, np.ndar
 def _size(bifurcation: xr.Dataset, step: int) -> int:
     y: Any = bifurcation["extremum_y_rel"].values[:, ::step]
     return int(5 * (~np.isnan(y)).sum())
+
+
+def orbits(
+    branches: xr.Dataset, points: Sequence[Mapping[str, Any]], variants: Sequence[str]
+) -> dict[str, np.ndarray]:
+    """Return the arrays of the branches of orbits and of their special points.
+
+    Parameters
+    ----------
+    branches : xarray.Dataset
+        Over ``point``, one branch after the other.
+    points : sequence of mapping
+        Special points; those with parameters of their own belong to another gear pair.
+    variants : sequence of str
+        Names of the variants, whose places stand for them.
+
+    Returns
+    -------
+    dict of ndarray
+        ``branch_…`` over the points of the branches and ``special_…`` over the special points:
+        the variant, ν_s, y_max and y_min; for branches their number and stability, for special
+        points their kind and period.
+    """
+    known = np.isin(branches["variant"].values.astype(str), list(variants))
+    branches = branches.isel(point=known)
+    rows = [row for row in points if "parameters" not in row and row["variant"] in variants]
+    place = {name: i for i, name in enumerate(variants)}
+    return {
+        "branch_variant": np.array([place[str(v)] for v in branches["variant"].values], "u2"),
+        "branch_number": branches["branch"].values.astype("u2"),
+        "branch_stability": branches["stability"].values.astype("i1"),
+        "branch_nu": branches["nu"].values.astype("f4"),
+        "branch_max": branches["y_max_rel"].values.astype("f4"),
+        "branch_min": branches["y_min_rel"].values.astype("f4"),
+        "special_variant": np.array([place[row["variant"]] for row in rows], "u2"),
+        "special_kind": np.array([KINDS.index(row["kind"]) for row in rows], "i1"),
+        "special_periods": np.array([row["periods"] for row in rows], "u2"),
+        "special_nu": np.array([row["nu"] for row in rows], "f8"),
+        "special_max": np.array([row["y_max_rel"] for row in rows], "f4"),
+        "special_min": np.array([row["y_min_rel"] for row in rows], "f4"),
+    }

@@ -3,6 +3,7 @@
 import json
 from collections.abc import Iterable
 from pathlib import Path
+from typing import Any
 
 import xarray as xr
 
@@ -42,11 +43,21 @@ def write_explorer(study: Study, places: Places) -> None:
     InputError
         If a result is missing or damaged.
     """
-    page = render(study, open_dataset(places.resonance), open_dataset(places.bifurcation))
+    orbits = None
+    if study.plan.mechanisms is not None:
+        points = json.loads(places.special_points.read_text(encoding="utf-8"))
+        orbits = open_dataset(places.branches), points
+    page = render(study, open_dataset(places.resonance), open_dataset(places.bifurcation), orbits)
     write_text(places.explorer, page)
 
 
-def render(study: Study, resonance: xr.Dataset, bifurcation: xr.Dataset) -> str:
+Orbits = tuple[xr.Dataset, list[dict[str, Any]]]
+"""Branches of orbits, and their special points."""
+
+
+def render(
+    study: Study, resonance: xr.Dataset, bifurcation: xr.Dataset, orbits: Orbits | None = None
+) -> str:
     """Return the page.
 
     Parameters
@@ -55,9 +66,14 @@ def render(study: Study, resonance: xr.Dataset, bifurcation: xr.Dataset) -> str:
         Parameters and variants.
     resonance, bifurcation : xarray.Dataset
         Its datasets.
+    orbits : tuple, optional
+        Its branches of orbits with their special points, if the study has them.
     """
     names = [str(name) for name in bifurcation["variant"].values]
-    packed = numbers.pack(numbers.diagram(resonance, bifurcation))
+    arrays = numbers.diagram(resonance, bifurcation)
+    if orbits is not None:
+        arrays |= numbers.orbits(*orbits, names)
+    packed = numbers.pack(arrays)
     pair = study.pair
     described = {
         "study": study.name,
@@ -65,6 +81,7 @@ def render(study: Study, resonance: xr.Dataset, bifurcation: xr.Dataset) -> str:
         "pair": pair.model_dump(mode="json"),
         "variants": names,
         "statuses": list(STATUSES),
+        "kinds": list(numbers.KINDS),
         "arrays": packed.index,
     }
     return (
@@ -77,6 +94,7 @@ def render(study: Study, resonance: xr.Dataset, bifurcation: xr.Dataset) -> str:
             nu=(float(resonance["nu"].min()), float(resonance["nu"].max())),
             reducible=is_reducible(pair.problem(variant(names[0]), float(resonance["nu"][0]))),
             tour=views.TOUR if study.claims else (),
+            orbits=orbits is not None,
             described=_for_script(described),
             numbers=packed.text,
             scripts=_joined(SCRIPTS),

@@ -26,36 +26,38 @@ _LUBRICANT, _MATERIAL = "c-lubricant", "c-material"
 TOUR = (
     Stop(
         "Below the jump",
-        "c-• at ν_s = 0.75. The teeth stay together: y is positive but for moments. In this variant "
-        "only the oil damps, and it acts only while the teeth are apart. So nothing takes energy "
-        "from the motion, the run rings on after its start, and its extrema form a cloud.",
+        "c-• at ν_s = 0.75. The teeth stay together: y is positive but for moments. In this "
+        "variant only the oil damps, and it acts only while the teeth are apart. So nothing takes "
+        "energy from the motion, the run rings on after its start, and its extrema form a cloud.",
         view(_LUBRICANT, 0.75),
     ),
     Stop(
         "Above the jump",
-        "c-• at ν_s = 0.79. The teeth part in every period, for half of the time (yellow). The oil "
-        "damps in every period, so the motion settles on one orbit, and that orbit is larger. Drag "
-        "ν_s to and fro across the jump at 0.77.",
+        "c-• at ν_s = 0.79. The teeth part in every period, for half of the time (yellow). The "
+        "oil damps in every period, so the motion settles on one orbit, and that orbit is larger. "
+        "Drag ν_s to and fro across the jump at 0.77.",
         view(_LUBRICANT, 0.79),
     ),
     Stop(
         "Two motions below the jump",
         "c-• at ν_s = 0.75 again, with the same parameters, but this run starts with the teeth "
-        "apart (y_0 = −1). It ends on the large orbit: two motions exist here side by side, and the "
-        "start decides between them. The diagram shows where runs with this start end.",
+        "apart (y_0 = −1). It ends on the large orbit: two motions exist here side by side, and "
+        "the start decides between them. The dots are runs with this start. They are on the large "
+        "orbit as soon as it exists, from its fold at ν_s = 0.706 on.",
         view(_LUBRICANT, 0.75, initial_displacement=-1),
     ),
     Stop(
         "The start moves the jump",
-        "Another starting phase, 0 in place of 0.2845, moves the jump from 0.77 to 0.745. Where the "
-        "motion with contact grows towards the resonance (ν_s = 0.8455 for C_min) it parts the teeth, "
-        "and the run falls onto the large orbit: sooner or later, as its start has it.",
+        "Another starting phase, 0 in place of 0.2845, moves the jump from 0.77 to 0.745. The "
+        "motion in contact grows towards the resonance with C_min (ν_s = 0.8455). It parts the "
+        "teeth at 0.791, and ends at a fold at 0.805 at the latest: every run beyond it is on the "
+        "large orbit. Most starts jump earlier.",
         view(_LUBRICANT, 0.75, initial_phase=0),
     ),
     Stop(
         "Damping in contact removes it",
-        "c-□ at ν_s = 0.79, with the dots of c-• in pale. The material damps while the teeth touch. "
-        "The start is forgotten, the orbit stays small, and the curve has no jump.",
+        "c-□ at ν_s = 0.79, with the dots of c-• in pale. The material damps while the teeth "
+        "touch. The start is forgotten, the orbit stays small, and the curve has no jump.",
         view(_MATERIAL, 0.79, beside=_LUBRICANT),
     ),
 )
@@ -68,6 +70,12 @@ FIGURES = {
     "fig5": view(_MATERIAL, 0.61),
     "fig6": view(_MATERIAL, 0.61, damping=19.7685),
     "fig7": view(_MATERIAL, 0.61, periods=2),
+    "branches": view(_LUBRICANT, 0.75),
+    "basins": view(_LUBRICANT, 0.75, initial_displacement=-1),
+    "sweeps": view(_LUBRICANT, 0.79),
+    "special_curves": view(_MATERIAL, 0.6386),
+    "lyapunov": view("a-conservative", 0.7),
+    "design_map": view("b-material", 0.81),
 }
 """The view of each figure."""
 
@@ -85,6 +93,7 @@ CLAIMS = {
     "F3.2": view(_MATERIAL, 0.63),
     "F3.3": view("h-lubricant", 0.79),
     "F3.4": view(_LUBRICANT, 0.72),
+    "F3.4b": view(_LUBRICANT, 0.62),
     "F3.5": view(_LUBRICANT, 0.66),
     "F3.6": view("h-lubricant", 0.95),
     "F4.1": view(_LUBRICANT, 0.6, periods=21),

@@ -1,7 +1,9 @@
 """Fig. 3: bifurcation diagrams of c, d and h."""
 
+from gearmesh.dynamics.response_curves import SCAN
 from gearmesh.reproduction.claims.evidence import Evidence
 from gearmesh.reproduction.claims.fig2 import LUBRICANT
+from gearmesh.reproduction.mechanisms.bands import EDGE_STEP
 
 
 def bifurcation_onset(evidence: Evidence) -> tuple[dict[str, dict[str, float]], str]:
@@ -35,6 +37,19 @@ def order_below(evidence: Evidence) -> tuple[dict[str, dict[str, float]], str]:
     return {"ratio": ratios, "below": below}, "median spread of the maxima of the periods, in y_st"
 
 
+def orderly_bands(evidence: Evidence) -> tuple[dict[str, dict[str, float]], str]:
+    """F3.4b: how smoothly the edges of the bands of extrema change in ⟨0.6; 0.8⟩."""
+    found = evidence.located("band", LUBRICANT)
+    measured = {
+        key: {name: measures[key] for name, measures in found.items()}
+        for key in ("smooth", "growth")
+    }
+    return measured, (
+        f"share of the steps of {SCAN:g} in ν_s over which both edges of the band change by at "
+        f"most {EDGE_STEP:g} y_st, and the greatest maximum near 0.66 over the median elsewhere"
+    )
+
+
 def loss_at_jumps(evidence: Evidence) -> tuple[dict[str, dict[str, float]], str]:
     """F3.5: increase of contact loss at the jumps."""
     gained = evidence.located("loss_gained", LUBRICANT)
@@ -54,6 +69,7 @@ MEASURES = {
     "F3.2": further_branches,
     "F3.3": contact_loss,
     "F3.4": order_below,
+    "F3.4b": orderly_bands,
     "F3.5": loss_at_jumps,
     "F3.6": orderly_decline,
 }

@@ -60,9 +60,10 @@ class Claim(Section):
     a mapping from the names of several quantities to such targets.
     """
 
-    id: str = Field(pattern=r"^[A-Z][0-9]+(\.[0-9]+)?$", description="P1, F2.1, ...")
+    id: str = Field(pattern=r"^[A-Z][0-9]+(\.[0-9]+[a-z]?)?$", description="P1, F2.1, ...")
     where: str = Field(min_length=1, description="place in the paper")
     figure: Figure = Field(description="whose notebook checks it; 'printed' for bare numbers")
+    quote: str | None = Field(None, description="what the paper says, at most one sentence")
     statement: str = Field(min_length=1, description="the claim in our own words")
     kind: Kind
     expected: Target | dict[str, Target]
@@ -114,15 +115,16 @@ class Claim(Section):
 class Entry(Claim):
     """A claim with what was found.
 
-    `judged` is false if something that the claim is about is missing in the study (a smoke study
-    has few variants). The status is then 'not_testable', and the claim counts neither for nor
-    against.
+    `mechanism` names the orbit that explains the claim, if one does. `judged` is false if something
+    that the claim is about is missing in the study (a smoke study has few variants). The status is
+    then 'not_testable', and the claim counts neither for nor against.
     """
 
     measured: Any = None
     status: Status
     detail: str = ""
     judged: bool = True
+    mechanism: str | None = None
 
     @property
     def unexpected(self) -> bool:
@@ -131,7 +133,7 @@ class Entry(Claim):
 
     def as_json(self) -> dict[str, Any]:
         """Return the entry in the form of `results/claims.json`."""
-        optional = {"tolerance_reason", "reason"}
+        optional = {"quote", "tolerance_reason", "reason", "mechanism"}
         found = self.model_dump(mode="json")
         return {
             key: _rounded(value)
@@ -223,8 +225,15 @@ def read_entries(path: Path) -> list[Entry]:
     return [validate(Entry, item, str(path), {}) for item in content]
 
 
-def collect(ledger: Iterable[Claim], checks: Iterable[Path], output: Path) -> list[Entry]:
+def collect(
+    ledger: Iterable[Claim],
+    checks: Iterable[Path],
+    output: Path,
+    mechanisms: Mapping[str, str] | None = None,
+) -> list[Entry]:
     """Put the checks of all figures together, in the order of the ledger, as `results/claims.json`.
+
+    `mechanisms` are the orbits that explain claims, by their ids.
 
     A claim that is missing in all files (because its notebook failed before the check) is entered
     as 'not_testable', and is judged: it is unexpected unless the ledger expects it.
@@ -235,6 +244,8 @@ def collect(ledger: Iterable[Claim], checks: Iterable[Path], output: Path) -> li
         or Entry(**claim.model_dump(), status=NOT_TESTABLE, detail="was not checked")
         for claim in ledger
     ]
+    known = mechanisms or {}
+    entries = [entry.model_copy(update={"mechanism": known.get(entry.id)}) for entry in entries]
     write_entries(output, entries)
     return entries
 

@@ -5,7 +5,6 @@ from collections.abc import Callable
 from functools import reduce
 
 import numpy as np
-from scipy.optimize import brentq
 
 from gearmesh.model import stiffness
 from gearmesh.model.variants import variant
@@ -94,6 +93,8 @@ def _root(function: Callable[[float], float], low: float, high: float) -> float:
     """Return where a function changes its sign; not-a-number if it does not."""
     if not function(low) * function(high) < 0:
         return math.nan
+    from scipy.optimize import brentq  # here, because the checks of all figures import this module
+
     return float(brentq(function, low, high, xtol=1e-8))
 
 

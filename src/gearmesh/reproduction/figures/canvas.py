@@ -6,7 +6,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
-from matplotlib import style
+from matplotlib import rcParams, style
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
@@ -56,12 +56,20 @@ def save(figure: Figure, path: Path | str) -> tuple[Path, Path]:
     """
     png, svg = (Path(f"{path}{suffix}") for suffix in (".png", ".svg"))
     with style.context(["default", STYLE]):
+        _lay_out(figure)
         with replacing(png) as temporary:
             figure.savefig(temporary, format="png", metadata={"Software": None})
-        figure.set_layout_engine("none")  # keep the layout of the PNG
         with replacing(svg) as temporary:
             figure.savefig(temporary, format="svg", metadata={"Date": None, "Creator": None})
     return png, svg
+
+
+def _lay_out(figure: Figure) -> None:
+    """Lay a figure out once, for PNG and SVG: matplotlib would draw it once more for each."""
+    if engine := figure.get_layout_engine():
+        figure.dpi = rcParams["savefig.dpi"]
+        engine.execute(figure)
+        figure.set_layout_engine(None)
 
 
 def picture(figure: Figure, path: Path | str | None = None) -> bytes:
@@ -70,6 +78,7 @@ def picture(figure: Figure, path: Path | str | None = None) -> bytes:
         return save(figure, path)[0].read_bytes()
     image = io.BytesIO()
     with style.context(["default", STYLE]):
+        _lay_out(figure)
         figure.savefig(image, format="png", metadata={"Software": None})
     return image.getvalue()
 

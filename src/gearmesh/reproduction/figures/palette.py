@@ -17,7 +17,9 @@ GREY = "#6b6b6b"
 PALE = "#b5b5b5"
 BLUE = "#005b96"
 RED = "#d5501a"
-"""The two colours of damping differ in lightness too, for print in grey."""
+GREEN = "#2e7d5b"
+"""The two colours of damping differ in lightness too, for print in grey. Green is for orbits of
+twice the mesh period."""
 
 
 @dataclass(frozen=True, slots=True)

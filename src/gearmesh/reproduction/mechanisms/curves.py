@@ -7,27 +7,37 @@ from typing import NamedTuple
 import numpy as np
 import xarray as xr
 
-from gearmesh.dynamics import orbits, special_curves, special_points
+from gearmesh.dynamics import branches, orbits, special_curves
+from gearmesh.dynamics.special_points import SpecialPoint
 from gearmesh.errors import NoOrbit
 from gearmesh.model.problem import Problem
 from gearmesh.model.variants import variant
 from gearmesh.reproduction.mechanisms.tables import Row
 from gearmesh.study.pair import Pair
 
-FROM, TO = 0.4, 1.4
+FROM, TO = 0.5, 1.2
 """Range of ν_s of the curves."""
 
-TIMES = (0.02, 8.0)
+TIMES = (0.05, 8.0)
 """Range of the damping and of the damping length, in multiples of the study's."""
+
+_BEGIN = 0.78
+_SEARCHED = (0.6, 0.9)
+"""Where the orbit in contact is found, and the range of ν_s in which it is followed, at another
+multiple of a parameter."""
 
 
 class Wanted(NamedTuple):
-    """A curve: the special point that it goes through, and what changes along it."""
+    """A curve: the special point that it goes through, and what changes along it.
+
+    `times` is the multiple of the parameter at which the special point is found.
+    """
 
     variant: str
     kind: str
     near: float
     parameter: str
+    times: float = 1.0
 
 
 DAMPING, LENGTH = "damping", "damping_length"
@@ -38,7 +48,10 @@ WANTED = (
     Wanted("b-material", "grazing_front", 0.80, DAMPING),
     Wanted("c-material", "grazing_front", 0.82, DAMPING),
     Wanted("c-material", "grazing_front", 0.82, LENGTH),
-    Wanted("c-lubricant", "flip", 0.66, DAMPING),
+    Wanted("c-material", "fold", 0.80, DAMPING, 0.4),
+    Wanted("c-material", "fold", 0.80, LENGTH, 6.0),
+    Wanted("c-lubricant", "flip", 0.655, DAMPING),
+    Wanted("c-lubricant", "flip", 0.67, DAMPING),
     Wanted("c-lubricant", "grazing_front", 0.79, DAMPING),
     Wanted("c-lubricant", "fold", 0.805, DAMPING),
     Wanted("c-lubricant", "fold", 0.705, LENGTH),
@@ -66,27 +79,42 @@ def curves(pair: Pair, rows: Iterable[Row]) -> xr.Dataset:
     rows = [row for row in rows if "parameters" not in row and row["periods"] == 1]
     pieces: list[xr.Dataset] = []
     for wanted in WANTED:
-        known = [
-            row for row in rows if row["variant"] == wanted.variant and row["kind"] == wanted.kind
-        ]
-        if not known:
-            continue
-        row = min(known, key=lambda row: abs(row["nu"] - wanted.near))
         try:
-            pieces.append(_curve(pair, wanted, row, len(pieces)))
+            points = _points(pair, wanted, rows)
+            if points:
+                nearest = min(points, key=lambda point: abs(point.nu - wanted.near))
+                pieces.append(_curve(pair, wanted, nearest, len(pieces)))
         except NoOrbit:
             continue
     return xr.concat(pieces, "point") if pieces else _columns(pair, [], [], [], None, 0)
 
 
-def _curve(pair: Pair, wanted: Wanted, row: Row, number: int) -> xr.Dataset:
+def _points(pair: Pair, wanted: Wanted, rows: Iterable[Row]) -> list[SpecialPoint]:
+    """Return the special points of a variant that a curve may go through.
+
+    They are those of the study, or are located at another multiple of the parameter. A study that
+    does not follow the variant has none.
+    """
+    own = [row for row in rows if row["variant"] == wanted.variant]
     family = _family(pair, wanted)
-    problem = family(row["nu"], 1.0)
-    orbit = orbits.correct(problem, np.array(row["state"]), row["periods"])
-    point = special_points.SpecialPoint(wanted.kind, row["nu"], {"nu": row["nu"]}, orbit)
-    found = special_curves.follow_special(
-        point, ("nu", "times"), ((FROM, TO), TIMES), family, (row["nu"], 1.0)
-    )
+    if wanted.times == 1.0:
+        return [
+            SpecialPoint(row["kind"], row["nu"], {"nu": row["nu"]}, orbit)
+            for row in own
+            if row["kind"] == wanted.kind
+            for orbit in (orbits.correct(family(row["nu"], 1.0), np.array(row["state"])),)
+        ]
+    if not own:
+        return []
+    begun = orbits.find_orbit(family(_BEGIN, wanted.times))
+    branch = branches.follow(begun, "nu", _SEARCHED)
+    return [point for point in branch.special if point.kind == wanted.kind]
+
+
+def _curve(pair: Pair, wanted: Wanted, point: SpecialPoint, number: int) -> xr.Dataset:
+    limits = (FROM, TO), TIMES
+    family, values = _family(pair, wanted), (point.nu, wanted.times)
+    found = special_curves.follow_special(point, ("nu", "times"), limits, family, values)
     cusps = [(one.parameters["nu"], one.parameters["times"]) for one in found.cusps]
     return _columns(
         pair,

@@ -3,7 +3,7 @@
 import numpy as np
 import xarray as xr
 
-from gearmesh.interface.attractors import lyapunov_spectrum
+from gearmesh.interface.lyapunov import lyapunov_spectrum
 from gearmesh.study.pair import Pair
 
 VARIANT = "a-conservative"

@@ -1,6 +1,6 @@
 """The branches of orbits of one variant over ν_s, and their special points."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from typing import Any
 
 import numpy as np
@@ -27,7 +27,7 @@ _SAME = 1e-6  # distance in ν_s or in the state between two that are the same
 
 
 def branches(pair: Pair, variant: str, limits: Range) -> list[Branch]:
-    """Follow the orbits of the mesh period, and those of twice the period where these flip.
+    """Follow the orbits of the mesh period.
 
     Orbits are searched for in the middle and at the ends of the range, because a branch may leave
     the range and come back as another one.
@@ -44,7 +44,7 @@ def branches(pair: Pair, variant: str, limits: Range) -> list[Branch]:
     Returns
     -------
     list of Branch
-        Those of period 1 first. It is empty if no orbit is found.
+        It is empty if no orbit is found.
     """
     single: list[Branch] = []
     for nu in (0.5 * sum(limits), *limits):
@@ -54,23 +54,25 @@ def branches(pair: Pair, variant: str, limits: Range) -> list[Branch]:
                 single.append(follow(orbit, "nu", limits))
         except NoOrbit:
             continue
-    doubled = [other for branch in single for other in _doubled(branch, limits)]
-    return [*single, *doubled]
+    return single
 
 
 def _ends_at(branch: Branch, orbit: Orbit) -> bool:
     """Return whether an orbit at an end of the range is an end of a branch."""
     ends = branch.at(0), branch.at(-1)
     return any(
-        end.nu == orbit.nu and np.abs(end.found.state - orbit.found.state).max() < _SAME
+        max(abs(end.nu - orbit.nu), *np.abs(end.found.state - orbit.found.state)) < _SAME
         for end in ends
     )
 
 
-def _doubled(single: Branch, limits: Range) -> Iterator[Branch]:
-    """Yield the branches of twice the period, each once even if two flips are on it."""
+def doubled(single: Sequence[Branch], limits: Range) -> Iterator[Branch]:
+    """Follow the orbits of twice the period that branch off at the flips of some branches.
+
+    A branch on which there are several of these flips is followed once.
+    """
     passed: list[float] = []
-    for point in single.special:
+    for point in (point for branch in single for point in branch.special):
         if point.kind != "flip" or any(abs(point.nu - nu) < _SAME for nu in passed):
             continue
         try:

@@ -23,8 +23,8 @@ VARIANT = "c-lubricant"
 BASINS_AT = (0.72, 0.76, 0.785)
 """Mesh frequencies of the basins: three between the fold and the grazing of the orbit."""
 
-REACH = 4.5
-"""Greatest |y - 1| and |y'| of the starts of a basin, in static deflections."""
+HEIGHTS, RATES = (-1.0, 5.0), (-2.0, 4.0)
+"""Ranges of y and y' of the starts of a basin, in static deflections."""
 
 REVOLUTIONS = 20
 """Revolutions after which a basin is judged."""
@@ -60,8 +60,7 @@ def basins(pair: Pair, branches: xr.Dataset, resolution: int) -> xr.Dataset:
     resolution : int
         Starts along each axis.
     """
-    heights = 1.0 + np.linspace(-REACH, REACH, resolution)
-    rates = np.linspace(-REACH, REACH, resolution)
+    heights, rates = np.linspace(*HEIGHTS, resolution), np.linspace(*RATES, resolution)
     rest = -2.0 * pair.stiffness_mean / pair.bearing_stiffness
     states = [State(float(y), float(v), rest, 0.0) for y, v in product(heights, rates)]
     runs = [

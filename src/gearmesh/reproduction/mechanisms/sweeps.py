@@ -21,7 +21,7 @@ FROM, TO = 0.6, 1.2
 MAP_LETTER = "c"
 MAP_PLACES = ("material", "both", "lubricant")
 MAP_STEP = 0.01
-MAP_DAMPING = (0.001, 0.5)
+MAP_DAMPING = (0.005, 0.5)
 """Least and greatest damping ratio D of the map."""
 
 SEPARATE = 0.2
@@ -30,13 +30,8 @@ SEPARATE = 0.2
 GRAZES = 0.02
 """Depth below y = 0 or -s, in y_st, up to which a motion counts as still on its side."""
 
-STATES = (
-    "no_contact_loss",
-    "contact_loss",
-    "back_flank_contact",
-    "more_than_one_attractor",
-)
-"""States of a cell of the design map, the last one if up- and down-sweep differ."""
+STATES = ("no_contact_loss", "contact_loss", "back_flank_contact")
+"""States of a cell of the design map: how far the motion goes in either sweep."""
 
 
 def sweeps(pair: Pair, variants: Sequence[str]) -> xr.Dataset:
@@ -76,14 +71,16 @@ def design_map(pair: Pair, resolution: int) -> xr.Dataset:
     apart = np.abs(found[:, :, 0] - found[:, :, 1]).max(axis=-1)
     backlash = pair.backlash / pair.static_deflection
     state = np.where(lowest < -backlash - GRAZES, 2, np.where(lowest < -GRAZES, 1, 0))
-    state = np.where(apart > SEPARATE, 3, state).astype(np.int8)
     flags = {
         "flag_values": np.arange(len(STATES), dtype=np.int8),
         "flag_meanings": " ".join(STATES),
         "units": "1",
-        "long_name": "state of the mesh in sweeps up and down",
+        "long_name": "how far the motion goes in sweeps up and down",
     }
-    dataset["state"] = (("place", "damping_ratio", "nu"), state, flags)
+    dataset["state"] = (("place", "damping_ratio", "nu"), state.astype(np.int8), flags)
+    stated = {"units": "1", "long_name": "1 where the sweeps end on different motions"}
+    several = (apart > SEPARATE).astype(np.int8)
+    dataset["several"] = (("place", "damping_ratio", "nu"), several, stated)
     dataset = dataset.assign_coords(_coordinates(nus))
     stated = {"units": "1", "long_name": "damping ratio D = k/(2 sqrt(C_s m_red))"}
     dataset = dataset.assign_coords(
@@ -128,8 +125,10 @@ def _extremes(found: np.ndarray, axes: tuple[str, ...], pair: Pair) -> xr.Datase
     )
 
 
-def _coordinates(nus: np.ndarray) -> xr.Dataset:
-    stated = {"units": "1", "long_name": "mesh frequency nu_s"}
-    made = xr.Dataset(coords={"nu": ("nu", nus, stated), "direction": list(DIRECTIONS)})
-    made["direction"].attrs = {"long_name": "direction of the sweep"}
-    return made.coords.to_dataset()
+def _coordinates(nus: np.ndarray) -> dict[str, xr.Variable]:
+    frequency = {"units": "1", "long_name": "mesh frequency nu_s"}
+    direction = {"long_name": "direction of the sweep"}
+    return {
+        "nu": xr.Variable("nu", nus, frequency),
+        "direction": xr.Variable("direction", list(DIRECTIONS), direction),
+    }

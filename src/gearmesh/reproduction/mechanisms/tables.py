@@ -82,6 +82,7 @@ def rows(variant: str, branches: Sequence[Branch], parameters: Mapping[str, Any]
         {**_row(variant, number, point), **more}
         for number, branch in enumerate(branches)
         for point in branch.special
+        if point.orbit.periods == branch.orbit.periods  # others are on the branch they begin at
     ]
 
 

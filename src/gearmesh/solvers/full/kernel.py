@@ -18,18 +18,14 @@ from gearmesh.model.contact import CONTACT_LOSS, INVERSE_MESH, NORMAL_MESH, regi
 from gearmesh.model.motion import Z_2, Z_3
 from gearmesh.solvers.compilation import inner
 from gearmesh.solvers.full.measures import measure, record_extremum, sample, take_value
-from gearmesh.solvers.full.roots import TABLE_SHAPE, evaluate, evaluate_with_slope, refine
-from gearmesh.solvers.full.series import (
-    BRACKET,
-    NEW,
-    SERIES_SHAPE,
-    UNDER_WAY,
-    V,
-    Y,
-    begin,
-    expand,
-    level,
+from gearmesh.solvers.full.roots import (
+    MAX_DEGREE,
+    TABLE_SHAPE,
+    evaluate,
+    evaluate_with_slope,
+    refine,
 )
+from gearmesh.solvers.full.series import NEW, UNDER_WAY, begin, expand, expand_outputs, level
 from gearmesh.solvers.full.signs import (
     BRACKET_TURNED,
     RELEASED,
@@ -40,9 +36,11 @@ from gearmesh.solvers.full.signs import (
     needed_force,
     settle_signs,
 )
+from gearmesh.solvers.full.tape import BRACKET, CONTACT, GAP, V, Y
 from gearmesh.solvers.response import DIVERGED, FRICTION_UNDEFINED, STEP_LIMIT
 
 PASSED, SEGMENT_ENDED, TURNED, CROSSED = range(4)
+GAP_CROSSED, PARTED = 7, 8
 """Events that end a step, beside those of `signs`."""
 
 _regime_of = inner(regime_of)
@@ -57,14 +55,15 @@ def _cross(case, mode, summary):
         mode.regime = NORMAL_MESH if mode.direction > 0.0 else INVERSE_MESH
     else:
         mode.regime = CONTACT_LOSS
-        if mode.period >= case.first_kept:
+        if mode.period >= case.first_kept and not mode.parted:
             summary.contact_losses += 1
+    mode.parted = mode.on_force = False
 
 
 @inner
-def _first_sign(case, segment, mode, fourier, series):
+def _first_sign(case, mode, tape, variant, series):
     """Return the sign of the first coefficient of y' that does not vanish, 0 if all do."""
-    expand(case, segment, mode, fourier, series, case.order)
+    expand(case, mode, tape, variant, series, case.order)
     for k in range(case.order):
         if series[V, k] != 0.0:
             return np.sign(series[V, k])
@@ -72,7 +71,7 @@ def _first_sign(case, segment, mode, fourier, series):
 
 
 @inner
-def _settle_direction(case, segment, mode, fourier, series, rest, extrema, summary):
+def _settle_direction(case, mode, tape, variant, series, rest, extrema, summary):
     """Find the direction of motion and the regime, and record an extremum where y has turned."""
     if mode.direction * series[V, 0] < 0.0:
         # The turning point that was just passed; rounding has left its velocity off 0.
@@ -81,13 +80,11 @@ def _settle_direction(case, segment, mode, fourier, series, rest, extrema, summa
     now = np.sign(series[V, 0])
     if abs(series[V, 0]) < rest:
         # Damping vanishes with y', so the acceleration does not depend on the direction.
-        expand(case, segment, mode, fourier, series, 2)
+        expand(case, mode, tape, variant, series, 2)
         if now == 0.0:
             now = np.sign(series[V, 1])
         if abs(series[V, 1]) < rest:
-            mode.direction = (
-                now if now != 0.0 else _first_sign(case, segment, mode, fourier, series)
-            )
+            mode.direction = now if now != 0.0 else _first_sign(case, mode, tape, variant, series)
             return
     if now != 0.0 and now != mode.direction:
         if mode.direction != 0.0:
@@ -106,7 +103,7 @@ def _choose_step(case, series, remaining):
     step = min(remaining, case.longest_step)
     for k in range(case.order - 1, case.order + 1):
         size = abs(series[Y, k])
-        for i in range(6):
+        for i in range(case.coordinates):
             size = max(size, abs(series[i, k]))
         if size > 0.0:
             # The rates have k times the terms of the coordinates.
@@ -149,6 +146,16 @@ def _find_event(case, segment, mode, state, step, series, rest, scaled, table):
         signs, kind = first_of_signs(case, segment, mode, state, step, series, scaled, table)
         if signs < end:
             end, event = signs, kind
+    if case.varying_backlash and mode.regime != NORMAL_MESH:
+        sign = 1.0 if mode.regime == CONTACT_LOSS else -1.0
+        crossing = first(series[GAP], case.order, step, sign, scaled, table)
+        if crossing < end:
+            end, event = crossing, GAP_CROSSED
+    if case.non_adhesive and mode.regime != CONTACT_LOSS:
+        sign = -mode.regime if mode.parted else mode.regime
+        parts = first(series[CONTACT], case.order - 2, step, sign, scaled, table)
+        if parts < end:
+            end, event = parts, PARTED
     passed = level(case, mode.regime, mode.direction)
     y = evaluate(series[Y], case.order, end * step)
     if mode.direction != 0.0 and mode.direction * (y - passed) >= 0.0:
@@ -167,10 +174,11 @@ def _advance(case, mode, state, series, duration):
     """Move the state along the series, and clear the marks of what was exactly 0 before."""
     if mode.time + duration == mode.time:
         return
-    for i in range(6):
+    for i in range(case.coordinates):
         state[i], state[6 + i] = evaluate_with_slope(series[i], case.order, duration)
     mode.time += duration
     mode.turns = mode.on_level = mode.on_bracket = mode.released = False
+    mode.on_gap = mode.on_force = False
 
 
 @inner
@@ -182,6 +190,18 @@ def _follow(case, segment, mode, state, event, summary):
         mode.turns = True
     elif event == CROSSED:
         _cross(case, mode, summary)
+    elif event == GAP_CROSSED:
+        mode.on_gap = True
+        leaves = mode.regime == INVERSE_MESH
+        if leaves and mode.period >= case.first_kept and not mode.parted:
+            summary.contact_losses += 1
+        mode.regime = CONTACT_LOSS if leaves else INVERSE_MESH
+        mode.parted = False
+    elif event == PARTED:
+        mode.on_force = True
+        mode.parted = not mode.parted
+        if mode.parted and mode.period >= case.first_kept:
+            summary.contact_losses += 1
     elif event == BRACKET_TURNED:
         mode.on_bracket = True
     elif event == SLIP:
@@ -192,12 +212,12 @@ def _follow(case, segment, mode, state, event, summary):
 
 
 @inner
-def _pass_boundary(case, mode, state, waves, deviation, series, strobes, summary):
+def _pass_boundary(case, mode, state, tape, variant, series, strobes, summary):
     """Enter the next mesh period and write its stroboscopic point."""
     mode.period += 1
     mode.time = 0.0
     mode.segment = 0
-    begin(case, mode, state, waves, deviation, series)
+    begin(case, mode, state, tape, variant, series)
     strobes[mode.period, 0] = series[Y, 0]
     strobes[mode.period, 1] = series[V, 0]
     if mode.period == case.first_kept or mode.period == case.periods:
@@ -205,18 +225,22 @@ def _pass_boundary(case, mode, state, waves, deviation, series, strobes, summary
 
 
 @inner
-def _start(case, mode, state, waves, deviation, series, strobes, summary):
+def _start(case, mode, state, tape, variant, series, strobes, summary):
     """Write the first stroboscopic point; set the branches of all laws if none are known."""
-    begin(case, mode, state, waves, deviation, series)
+    begin(case, mode, state, tape, variant, series)
     y = series[Y, 0]
     strobes[0, 0] = y
     strobes[0, 1] = series[V, 0]
     if mode.stage == NEW:
-        mode.regime = _regime_of(y, case.backlash)
+        gap = series[GAP, 0] - y if case.varying_backlash else case.backlash
+        mode.regime = _regime_of(y, gap)
         mode.run_out_sign = 1.0
         mode.slip_sign = 1.0
         if case.follows_run_out and series[BRACKET, 0] < 0.0:
             mode.run_out_sign = -1.0
+        if case.non_adhesive and mode.regime != CONTACT_LOSS:
+            expand(case, mode, tape, variant, series, 2)
+            mode.parted = mode.regime * series[CONTACT, 0] < 0.0
     mode.stage = UNDER_WAY
     if case.first_kept == 0:
         take_value(summary, y)
@@ -226,8 +250,8 @@ def _start(case, mode, state, waves, deviation, series, strobes, summary):
 def run(
     cases,
     segments,
-    waves,
-    deviation,
+    variants,
+    tape,
     state,
     modes,
     strobes,
@@ -236,6 +260,7 @@ def run(
     per_period,
     summaries,
     most_turns,
+    series,
 ):
     """Integrate one run, or continue it.
 
@@ -244,11 +269,12 @@ def run(
     cases : ndarray of `CASE`, shape (1,)
     segments : ndarray of `SEGMENT`
         Of a mesh period, in their order; the last one ends with it.
-    waves, deviation : ndarray, shape (n, 2)
-        Amplitudes (cosine, sine) of the truncated series of C(t), empty for the rectangular wave,
-        and of the profile deviation.
+    variants : ndarray of int, shape (periods + 1,)
+        Which kind of period each is: where single teeth have factors, periods differ.
+    tape : tuple of ndarray
+        The fields of `gearmesh.solvers.full.tape.Tape` for the segments of every kind of period.
     state : ndarray, shape (12,)
-        Coordinates and rates at the start; at the end of the run afterwards.
+        Coordinates and, from the seventh place, rates at the start; at the end afterwards.
     modes : ndarray of `MODE`, shape (1,)
         Zero for a new run. (A record that numba takes from an array does not keep it alive.)
     strobes : ndarray, shape (periods + 1, 2)
@@ -260,6 +286,8 @@ def run(
         y_max and y_min start from -inf and inf.
     most_turns : int
         Steps after which the function returns, to be called again.
+    series : ndarray, shape (rows, MAX_DEGREE + 1)
+        Workspace of zeros.
 
     Returns
     -------
@@ -269,29 +297,29 @@ def run(
     case = cases[0]
     summary = summaries[0]
     mode = modes[0]
-    series = np.zeros(SERIES_SHAPE)
-    scaled = np.zeros(SERIES_SHAPE[1])
+    scaled = np.zeros(MAX_DEGREE + 1)
     table = np.zeros(TABLE_SHAPE)
-    fourier = waves.shape[0] > 0
     if mode.stage != UNDER_WAY:
-        _start(case, mode, state, waves, deviation, series, strobes, summary)
+        _start(case, mode, state, tape, variants[mode.period], series, strobes, summary)
     last = summary.steps + most_turns
     while summary.steps < last:
         segment = segments[mode.segment]
         if mode.time >= segment.end:
             mode.segment += 1
             if mode.segment == segments.size:
-                _pass_boundary(case, mode, state, waves, deviation, series, strobes, summary)
+                following = variants[mode.period + 1]
+                _pass_boundary(case, mode, state, tape, following, series, strobes, summary)
                 if mode.period == case.periods:
                     return True
             continue
-        begin(case, mode, state, waves, deviation, series)
+        variant = variants[mode.period]
+        begin(case, mode, state, tape, variant, series)
         if not abs(series[Y, 0]) < case.farthest:
             summary.status = DIVERGED
             return True
         settled = True
         if case.follows_run_out:
-            settled = settle_signs(case, segment, mode, fourier, state, series)
+            settled = settle_signs(case, segment, mode, tape, variant, state, series)
         if not settled:
             summary.status = FRICTION_UNDEFINED
             return True
@@ -300,16 +328,17 @@ def run(
             summary.status = STEP_LIMIT
             return True
         rest = REST * _rounding(state)
-        _settle_direction(case, segment, mode, fourier, series, rest, extrema, summary)
-        expand(case, segment, mode, fourier, series, case.order)
+        _settle_direction(case, mode, tape, variant, series, rest, extrema, summary)
+        expand(case, mode, tape, variant, series, case.order)
         step = _choose_step(case, series, segment.end - mode.time)
         share, event = _find_event(case, segment, mode, state, step, series, rest, scaled, table)
         duration = share * step
         if mode.period >= case.first_kept:
+            expand_outputs(case, mode, tape, variant, series)
             measure(case, mode, series, duration, summary)
             if per_period:
                 until = segment.end if event == SEGMENT_ENDED else mode.time + duration
-                sample(case, segment, mode, fourier, series, until, samples, per_period, summary)
+                sample(case, mode, series, until, samples, per_period, summary)
         _advance(case, mode, state, series, duration)
         _follow(case, segment, mode, state, event, summary)
     return False

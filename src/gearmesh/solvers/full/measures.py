@@ -5,14 +5,29 @@ import numpy as np
 from gearmesh.model.contact import CONTACT_LOSS, INVERSE_MESH
 from gearmesh.solvers.compilation import inner
 from gearmesh.solvers.full.roots import evaluate, evaluate_with_slope
-from gearmesh.solvers.full.series import FRICTION, STIFFNESS, V, Y
+from gearmesh.solvers.full.tape import (
+    BEARING_2,
+    BEARING_3,
+    FRICTION,
+    NORMAL,
+    STIFFNESS,
+    TRANSMISSION,
+    V,
+    Y,
+)
 from gearmesh.solvers.response import MAXIMUM, MEASURED, MINIMUM
 
 SUMMARY = np.dtype([*MEASURED, ("samples", np.int64)])
 """What is measured on a run, and how many samples were taken."""
 
 SAMPLE = np.dtype(
-    [(name, np.float64) for name in ("time", "y", "v", "a", "stiffness", "friction", "regime")]
+    [
+        (name, np.float64)
+        for name in (
+            *("time", "y", "v", "a", "stiffness", "friction", "regime"),
+            *("normal", "transmission_error", "bearing_3", "bearing_2"),
+        )
+    ]
 )
 
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(16)
@@ -44,7 +59,7 @@ def record_extremum(case, mode, y, extrema, summary):
 
 
 @inner
-def sample(case, segment, mode, fourier, series, until, samples, per_period, summary):
+def sample(case, mode, series, until, samples, per_period, summary):
     """Write the samples before `until`."""
     first = (mode.period - case.first_kept) * per_period
     while summary.samples - first < per_period:
@@ -56,13 +71,14 @@ def sample(case, segment, mode, fourier, series, until, samples, per_period, sum
         sample.time = mode.period * case.period + time
         sample.y = evaluate(series[Y], case.order, since)
         sample.v, sample.a = evaluate_with_slope(series[V], case.order - 1, since)
-        sample.stiffness = segment.stiffness
-        if fourier:
-            sample.stiffness = evaluate(series[STIFFNESS], case.order, since)
-        sample.friction = 0.0
-        if case.friction != 0.0:
-            sample.friction = evaluate(series[FRICTION], case.order - 2, since)
-        sample.regime = mode.regime
+        degree = case.order - 2
+        sample.stiffness = evaluate(series[STIFFNESS], degree, since)
+        sample.friction = evaluate(series[FRICTION], degree, since)
+        sample.regime = CONTACT_LOSS if mode.parted else mode.regime
+        sample.normal = evaluate(series[NORMAL], degree, since)
+        sample.transmission_error = evaluate(series[TRANSMISSION], degree, since)
+        sample.bearing_3 = evaluate(series[BEARING_3], degree, since)
+        sample.bearing_2 = evaluate(series[BEARING_2], degree, since)
         summary.samples += 1
 
 
@@ -74,7 +90,7 @@ def measure(case, mode, series, duration, summary):
         y = evaluate(series[Y], case.order, duration * _NODES[i])
         total += _WEIGHTS[i] * y * y
     summary.square_integral += total * duration
-    if mode.regime == CONTACT_LOSS:
+    if mode.regime == CONTACT_LOSS or mode.parted:
         summary.loss_time += duration
     elif mode.regime == INVERSE_MESH:
         summary.inverse_time += duration

@@ -12,18 +12,18 @@ from dataclasses import replace
 import numpy as np
 from numba import njit
 
-from gearmesh.model import stiffness
 from gearmesh.model.contact import CONTACT_LOSS, dynamic_force
-from gearmesh.model.friction import follows_run_out
-from gearmesh.model.motion import ROTATION_2, ROTATION_3, Y_2, Y_3, bearing_damping, start
+from gearmesh.model.motion import ROTATION_2, ROTATION_3, Y_2, Y_3, start
 from gearmesh.model.problem import Branches, Problem, State
 from gearmesh.model.segments import segments
 from gearmesh.solvers import limits
 from gearmesh.solvers.compilation import persistent
 from gearmesh.solvers.full import kernel
+from gearmesh.solvers.full.coordinates import embedding, kinds_of_period, projected, signs_act
 from gearmesh.solvers.full.measures import SAMPLE, SUMMARY
 from gearmesh.solvers.full.roots import MAX_DEGREE
 from gearmesh.solvers.full.series import CASE, CONTINUED, MODE, SEGMENT
+from gearmesh.solvers.full.tape import tape
 from gearmesh.solvers.response import EXTREMUM, LOOSENING, Companion, Response, Samples, assemble
 
 _EXTREMA_PER_PERIOD = 64
@@ -105,12 +105,16 @@ class _Run:
         displacement: float = 0.0,
     ) -> None:
         self.problem = problem
+        self.embedding = embedding(problem)
+        kinds, variants = kinds_of_period(problem)
+        recorded = tape(problem, kinds)
         self._arguments = (
-            _case(problem, tolerance, order),
+            _case(problem, tolerance, order, self.embedding.shape[1]),
             _segments(problem),
-            _waves(problem),
-            np.array(problem.deviation, float).reshape(-1, 2),
+            variants,
+            tuple(recorded),
         )
+        self._series = np.zeros((recorded.height, MAX_DEGREE + 1))
         self.extrema = np.zeros(0, EXTREMUM)
         self.start = np.concatenate(start(problem))
         self.start[ROTATION_3] += displacement
@@ -124,7 +128,7 @@ class _Run:
         summaries = np.zeros(1, SUMMARY)
         summaries["y_max"], summaries["y_min"] = -np.inf, np.inf
         self.summary = summaries[0]
-        self.state = self.start.copy()
+        self.state = projected(self.start, self.embedding)
         self.mode = _mode(self.problem)
         self.strobes = np.zeros((self.problem.periods + 1, 2))
         self.extrema = np.zeros(room, EXTREMUM)
@@ -139,13 +143,15 @@ class _Run:
             samples_per_period,
             summaries,
             _MOST_TURNS,
+            self._series,
         ):
             pass
 
     def final_state(self) -> State:
         """Return the state at the end of the run."""
         problem, mode = self.problem, self.mode[0]
-        b, b_rate = (self.state[[Y_3, 6 + Y_3]] - self.state[[Y_2, 6 + Y_2]]).tolist()
+        six = self._all_six()
+        b, b_rate = (six[[Y_3, 6 + Y_3]] - six[[Y_2, 6 + Y_2]]).tolist()
         y, v = self.strobes[-1].tolist()
         branches = Branches(
             problem=replace(problem, initial_state=None),
@@ -154,21 +160,30 @@ class _Run:
             measured=problem.kept_revolutions > 0,
             signs=(float(mode["run_out_sign"]), float(mode["slip_sign"])),
             level=float(mode["level"]),
-            exact=(
-                bool(mode["turns"]),
-                bool(mode["on_level"]),
-                bool(mode["on_bracket"]),
-                bool(mode["released"]),
-            ),
+            exact=tuple(bool(mode[name]) for name in _EXACT),
+            parted=bool(mode["parted"]),
         )
         periods = problem.start_period + problem.periods
-        return State(y, v, b, b_rate, tuple(self.state.tolist()), periods, branches)
+        return State(y, v, b, b_rate, tuple(six.tolist()), periods, branches)
+
+    def _all_six(self) -> np.ndarray:
+        """Return the six coordinates and their rates; what is not integrated is 0."""
+        n = self.embedding.shape[1]
+        both = self.embedding @ self.state[:n], self.embedding @ self.state[6 : 6 + n]
+        return np.concatenate(both)
 
     @property
     def rotation_drift(self) -> float:
-        """Change of (phi_3 - phi_2)/2 over the run, in rad."""
-        gained = self.state - self.start
-        return 0.5 * float(gained[ROTATION_3] - gained[ROTATION_2]) / self.problem.base_radius
+        """Change of (phi_3 - phi_2)/2 over the run, in rad; not a number if it is left out."""
+        if self.embedding[ROTATION_3, 0] != 1.0:
+            return np.nan
+        gained = self._all_six() - self.start
+        wheel_3, wheel_2 = self.problem.both_wheels
+        turned_3 = gained[ROTATION_3] / wheel_3.base_radius
+        return 0.5 * float(turned_3 - gained[ROTATION_2] / wheel_2.base_radius)
+
+
+_EXACT = ("turns", "on_level", "on_bracket", "released", "on_gap", "on_force")
 
 
 def _mode(problem: Problem) -> np.ndarray:
@@ -181,7 +196,9 @@ def _mode(problem: Problem) -> np.ndarray:
         mode["regime"], mode["direction"] = branches.regime, branches.direction
         mode["run_out_sign"], mode["slip_sign"] = branches.signs
         mode["level"] = branches.level
-        mode["turns"], mode["on_level"], mode["on_bracket"], mode["released"] = branches.exact
+        mode["parted"] = branches.parted
+        for name, exact in zip(_EXACT, branches.exact, strict=True):
+            mode[name] = exact
     return mode
 
 
@@ -193,28 +210,21 @@ def suitable_order(tolerance: float) -> int:
     return min(MAX_DEGREE, max(8, math.ceil(3.0 - 0.5 * math.log(tolerance))))
 
 
-def _case(problem: Problem, tolerance: float, order: int) -> np.ndarray:
+def _case(problem: Problem, tolerance: float, order: int, coordinates: int) -> np.ndarray:
     case = np.zeros(1, CASE)
     # Numbers that have the same name and meaning in both.
-    for name in (
-        *("nu", "period", "initial_phase", "rotation_speed", "teeth", "material", "lubricant"),
-        *("backlash", "body_mass", "bearing_stiffness", "base_radius"),
-        *("eccentricity_3", "eccentricity_2", "eccentricity_angle"),
-    ):
+    for name in ("period", "initial_phase", "backlash", "start_period", "periods"):
         case[name] = getattr(problem, name)
-    case["stiffness_mean"] = stiffness.mean(
-        problem.contact_ratio, problem.stiffness_max, problem.stiffness_min
-    )
-    case["bearing_damping"] = bearing_damping(problem)
+    case["varying_backlash"] = bool(problem.terms.backlash_harmonics)
+    case["non_adhesive"] = problem.terms.non_adhesive
     case["friction"] = problem.friction_coefficient
-    case["middle_arm"] = math.tan(problem.pressure_angle)
-    case["base_pitch"] = 2.0 * math.pi / problem.teeth
-    case["has_run_out"] = problem.has_run_out
-    case["follows_run_out"] = problem.friction_coefficient != 0.0 and follows_run_out(
-        problem.eccentricity_3, problem.eccentricity_2
-    )
-    case["start_period"] = problem.start_period
-    case["periods"] = problem.periods
+    case["follows_run_out"] = signs_act(problem)
+    case["masses"] = [wheel.body_mass for wheel in problem.both_wheels]
+    case["pulls"] = [
+        (wheel.bearing_stiffness[1], wheel.bearing_damping[1]) for wheel in problem.both_wheels
+    ]
+    case["coordinates"] = coordinates
+    case["segments"] = len(segments(problem))
     case["first_kept"] = problem.periods - problem.kept_periods
     case["tolerance"] = tolerance
     case["longest_step"] = limits.longest_step(problem)
@@ -226,26 +236,8 @@ def _case(problem: Problem, tolerance: float, order: int) -> np.ndarray:
 
 def _segments(problem: Problem) -> np.ndarray:
     """Return the segments of a mesh period as the kernel takes them."""
-    parts = []
-    for part in segments(problem):
-        level = stiffness.rectangular(
-            part.middle, problem.contact_ratio, problem.stiffness_max, problem.stiffness_min
-        )
-        sigma = part.pairs[0].sigma - 0.5 * (part.start + part.end)
-        parts.append((part.end * problem.period, level, part.gamma, sigma))
+    parts = [(part.end * problem.period, part.gamma) for part in segments(problem)]
     return np.array(parts, SEGMENT)
-
-
-def _waves(problem: Problem) -> np.ndarray:
-    """Return the amplitudes (cosine, sine) of the truncated series of C(t), shape (n, 2)."""
-    waves = np.zeros((problem.stiffness_harmonics, 2))
-    waves[:, 0] = stiffness.fourier_amplitudes(
-        problem.contact_ratio,
-        problem.stiffness_max,
-        problem.stiffness_min,
-        problem.stiffness_harmonics,
-    )
-    return waves
 
 
 def _samples(rows: np.ndarray) -> Samples:
@@ -259,6 +251,10 @@ def _samples(rows: np.ndarray) -> Samples:
         stiffness=columns["stiffness"],
         modified_stiffness=columns["stiffness"] * (regime != CONTACT_LOSS),
         force_dynamic=dynamic_force(columns["y"], columns["stiffness"]),
+        force_normal=columns["normal"],
         force_friction=columns["friction"],
+        force_bearing_3=columns["bearing_3"],
+        force_bearing_2=columns["bearing_2"],
+        transmission_error=columns["transmission_error"],
         regime=regime,
     )

@@ -11,7 +11,8 @@ from gearmesh.model.friction import holding_force
 from gearmesh.model.motion import Z_2, Z_3
 from gearmesh.solvers.compilation import inner
 from gearmesh.solvers.full.roots import first_change
-from gearmesh.solvers.full.series import BRACKET, ELASTIC, elastic_coefficient, expand
+from gearmesh.solvers.full.series import expand
+from gearmesh.solvers.full.tape import BRACKET, ELASTIC, FRICTION
 
 REST = 32.0 * np.finfo(np.float64).eps
 """Motion of less than this many times the rounding of the coordinates is rest."""
@@ -25,24 +26,26 @@ _holding_force = inner(holding_force)
 @inner
 def needed_force(case, state):
     """Return the F_T that holds z_3' = z_2'."""
-    return _holding_force(case.bearing_stiffness * (state[Z_3] - state[Z_2]))
+    pull_3 = case.pulls[0, 0] * state[Z_3] + case.pulls[0, 1] * state[6 + Z_3]
+    pull_2 = case.pulls[1, 0] * state[Z_2] + case.pulls[1, 1] * state[6 + Z_2]
+    return _holding_force(pull_3, pull_2, case.masses[0], case.masses[1])
 
 
 @inner
-def _settle_slip(case, segment, mode, fourier, state, series):
+def _settle_slip(case, segment, mode, tape, variant, state, series):
     """Find the sign of z_3' - z_2', or that the flanks stick."""
     slip = state[6 + Z_3] - state[6 + Z_2]
     if mode.released or mode.slip_sign * slip > 0.0:
         return
     mean = 0.5 * (state[6 + Z_3] + state[6 + Z_2])
     for i in (Z_3, Z_2):
-        state[6 + i] = series[i, 1] = mean
+        state[6 + i] = series[i, 1] = series[6 + i, 0] = mean
     if abs(needed_force(case, state)) < REST:
         mean = 0.5 * (state[Z_3] + state[Z_2])
         for i in (Z_3, Z_2):
             state[i] = series[i, 0] = mean
-    elastic = elastic_coefficient(case, segment, mode, series, fourier, 0)
-    available = case.friction * elastic * segment.gamma * mode.run_out_sign
+    expand(case, mode, tape, variant, series, 2)
+    available = case.friction * series[ELASTIC, 0] * segment.gamma * mode.run_out_sign
     opposes = available > 0.0
     if mode.on_level and mode.regime != CONTACT_LOSS:
         # The elastic force is 0 at this moment only; its sign afterwards is that of y'.
@@ -55,7 +58,7 @@ def _settle_slip(case, segment, mode, fourier, state, series):
 
 
 @inner
-def settle_signs(case, segment, mode, fourier, state, series):
+def settle_signs(case, segment, mode, tape, variant, state, series):
     """Find both signs of eq. (6); return whether there are any.
 
     Where friction pushes the bracket back to 0 from both sides, neither sign lasts.
@@ -64,14 +67,14 @@ def settle_signs(case, segment, mode, fourier, state, series):
         mode.on_bracket = True
         series[BRACKET, 0] = 0.0
     if not mode.on_bracket:
-        _settle_slip(case, segment, mode, fourier, state, series)
+        _settle_slip(case, segment, mode, tape, variant, state, series)
         return True
     slip_sign = mode.slip_sign
     for _ in range(2):
         mode.run_out_sign = -mode.run_out_sign
         mode.slip_sign = slip_sign
-        _settle_slip(case, segment, mode, fourier, state, series)
-        expand(case, segment, mode, fourier, series, 2)
+        _settle_slip(case, segment, mode, tape, variant, state, series)
+        expand(case, mode, tape, variant, series, 2)
         if mode.run_out_sign * series[BRACKET, 1] >= 0.0:
             return True
     return False
@@ -102,8 +105,11 @@ def first_of_signs(case, segment, mode, state, step, series, scaled, table):
             row[1] = 0.0
         slips = first(row, degree, step, mode.slip_sign, scaled, table)
         return (slips, SLIP) if slips < end else (end, event)
-    for k in range(degree):
-        row[k] = case.friction * segment.gamma * mode.run_out_sign * series[ELASTIC, k]
-    row[0] -= abs(needed_force(case, state))
-    gives_way = first(row, degree - 1, step, 1.0, scaled, table)
+    # Friction holds while the force that it takes is within what is available, on either side.
+    gives_way = 1.0 + end
+    for side in (1.0, -1.0):
+        for k in range(degree):
+            available = case.friction * segment.gamma * mode.run_out_sign * series[ELASTIC, k]
+            row[k] = available - side * series[FRICTION, k]
+        gives_way = min(gives_way, first(row, degree - 1, step, 1.0, scaled, table))
     return (gives_way, RELEASED) if gives_way < end else (end, event)

@@ -12,9 +12,9 @@ from gearmesh.solvers.lanes.operations import (
     width_of,
     zeros8,
 )
-from gearmesh.solvers.lanes.rows import load, store, store_at
+from gearmesh.solvers.lanes.rows import get, load, store, store_at
 from gearmesh.solvers.reduced.events import SEGMENT_ENDED
-from gearmesh.solvers.reduced.records import get, take_value
+from gearmesh.solvers.reduced.records import take_value
 from gearmesh.solvers.reduced.taylor import direction, evaluate
 from gearmesh.solvers.reduced.workspace import (
     EVENT,
@@ -28,12 +28,13 @@ from gearmesh.solvers.reduced.workspace import (
     SINCE_SEGMENT,
     SQUARE_INTEGRAL,
     TAKEN,
+    B,
     Y,
 )
 from gearmesh.solvers.response import MAXIMUM, MINIMUM
 
-SAMPLED = 3
-"""Quantities that are sampled: y, v and a."""
+SAMPLED = 5
+"""Quantities that are sampled: y, v, a, b and b'."""
 
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(6)
 _NODES = 0.5 * (_NODES + 1.0)
@@ -84,7 +85,7 @@ def integrate_square(like, work):
 
 @inner
 def sample(work, width, lane, run, samples, per_period):
-    """Write the samples of y, v and a that fall on the step of one lane, a few at a time."""
+    """Write the samples that fall on the step of one lane, a few at a time."""
     period = int(get(work, width, PERIOD, lane))
     if period < run.first_kept:
         return
@@ -107,11 +108,15 @@ def sample(work, width, lane, run, samples, per_period):
     # A chunk may write beyond `last`: the next step writes there again, rows have spare room.
     for i in range(first, last, width_of(like)):
         time = (lane_numbers(like) + float(i)) * spacing - since_boundary
-        y = v = half_a = zero
+        y = v = half_a = b = b_rate = zero
         for k in range(ORDER, -1, -1):
             half_a = fma(half_a, time, v)
             v = fma(v, time, y)
             y = fma(y, time, spread(like, get(work, width, Y + k, lane)))
+            b_rate = fma(b_rate, time, b)
+            b = fma(b, time, spread(like, get(work, width, B + k, lane)))
         store_at(samples[0], begin + i, y)
         store_at(samples[1], begin + i, v)
         store_at(samples[2], begin + i, half_a * 2.0)
+        store_at(samples[3], begin + i, b)
+        store_at(samples[4], begin + i, b_rate)

@@ -9,8 +9,15 @@ from typing import Any
 import numpy as np
 from numba import njit
 
-from gearmesh.model.contact import CONTACT_LOSS, INVERSE_MESH, dynamic_force, regime_of
-from gearmesh.model.problem import Branches, Problem, State
+from gearmesh.model.contact import (
+    CONTACT_LOSS,
+    INVERSE_MESH,
+    dynamic_force,
+    elastic_force,
+    regime_of,
+)
+from gearmesh.model.damping import damping_force
+from gearmesh.model.problem import Branches, GeneralTerms, Problem, State
 from gearmesh.model.segments import Segment, segments
 from gearmesh.solvers import limits
 from gearmesh.solvers.compilation import persistent
@@ -53,7 +60,12 @@ _scalar_sweep = persistent(_build_scalar_sweep)
 
 
 def is_reducible(problem: Problem) -> bool:
-    """Return whether a problem has no run-out, profile deviation or Fourier stiffness."""
+    """Return whether a problem has equal wheels without run-out and no term beyond the paper's.
+
+    Profile deviation and a truncated series of the stiffness are such terms.
+    """
+    if problem.wheels is not None or problem.terms != GeneralTerms():
+        return False
     return not (problem.has_run_out or problem.deviation or problem.stiffness_harmonics)
 
 
@@ -78,7 +90,8 @@ def integrate(
     extrema = np.empty((n, extrema_per_period * kept), EXTREMUM)
     sampled = n if samples_per_period else 0
     samples = np.empty((sampled, SAMPLED, kept * samples_per_period + WIDEST))
-    _sweep(runs, summaries, strobes, extrema, samples, samples_per_period)
+    width = 1 if len(runs) == 1 else WIDEST
+    sweep_all(width, runs, summaries, strobes, extrema, samples, samples_per_period)
     measured = [
         dict(zip(SUMMARY.names or (), values, strict=True)) for values in summaries.tolist()
     ]
@@ -112,7 +125,7 @@ def _runs(
 ) -> np.ndarray:
     """Return the runs in the form that the sweep takes, followed by their companions."""
     n = len(problems)
-    rows = [_run(problem, tolerance, samples_per_period) for problem in problems]
+    rows = [run_row(problem, tolerance, samples_per_period) for problem in problems]
     runs = np.array(rows + rows if estimate_errors else rows).view(RUN)[:, 0]
     companions = runs[n:]
     companions["log_tolerance"] = math.log2(tolerance * LOOSENING)
@@ -124,7 +137,7 @@ def _runs(
     return runs
 
 
-def _run(problem: Problem, tolerance: float, samples_per_period: int) -> list[float]:
+def run_row(problem: Problem, tolerance: float, samples_per_period: int) -> list[float]:
     """Return `problem` in the form that the compiled sweep takes, a row of `RUN`."""
     period, parts = problem.period, segments(problem)
     friction = problem.friction_coefficient * math.tan(problem.pressure_angle)
@@ -182,14 +195,14 @@ def _sample_ends(parts: tuple[Segment, ...], per_period: int) -> list[int]:
     return [math.ceil(part.end * per_period - _ON_EDGE) for part in parts]
 
 
-def _sweep(runs: np.ndarray, *arguments: object) -> None:
-    """Call the compiled sweep until all runs are over."""
+def sweep_all(width: int, *arguments: object) -> None:
+    """Call the compiled sweep of one lane or of `WIDEST` lanes until all runs are over."""
     progress = np.full(PROGRESS, -1, np.int64)
-    compiled, width = (_scalar_sweep, 1) if len(runs) == 1 else (_vector_sweep, WIDEST)
+    compiled = _scalar_sweep if width == 1 else _vector_sweep
     progress[WIDEST:] = 0
     progress[ENDED] = (1 << width) - 1
     work = _workspace()
-    while not compiled(work, runs, *arguments, progress, _MOST_TURNS):
+    while not compiled(work, *arguments, progress, _MOST_TURNS):
         pass
 
 
@@ -214,12 +227,12 @@ def _final_state(problem: Problem, summary: Mapping[str, Any]) -> State:
 
 
 class _Samples:
-    """A time course like `response.Samples`; all but y, v and a is computed on demand."""
+    """A time course like `response.Samples`; what follows from it is computed on demand."""
 
     def __init__(self, problem: Problem, rows: np.ndarray, per_period: int) -> None:
         self._problem = problem
         self._per_period = per_period
-        self.y, self.v, self.a = rows[:, : problem.kept_periods * per_period]
+        self.y, self.v, self.a, self._b, self._b_rate = rows[:, : problem.kept_periods * per_period]
 
     @cached_property
     def time(self) -> np.ndarray:
@@ -245,6 +258,31 @@ class _Samples:
     @cached_property
     def force_dynamic(self) -> np.ndarray:
         return dynamic_force(self.y, self.stiffness)
+
+    @cached_property
+    def force_normal(self) -> np.ndarray:
+        problem = self._problem
+        elastic = elastic_force(self.y, self.stiffness, self.regime, problem.backlash)
+        damping = np.where(
+            self.regime == CONTACT_LOSS,
+            damping_force(self.v, problem.lubricant),
+            damping_force(self.v, problem.material),
+        )
+        return elastic + damping
+
+    @cached_property
+    def transmission_error(self) -> np.ndarray:
+        return self.y - self._b
+
+    @cached_property
+    def force_bearing_3(self) -> np.ndarray:
+        # The bodies move alike, in opposite directions.
+        damping, _ = self._problem.both_wheels[0].bearing_damping
+        return 0.5 * (self._problem.bearing_stiffness * self._b + damping * self._b_rate)
+
+    @cached_property
+    def force_bearing_2(self) -> np.ndarray:
+        return -self.force_bearing_3
 
     @cached_property
     def force_friction(self) -> np.ndarray:

@@ -226,4 +226,4 @@ listen();
 listenToPictures();
 changed();
 // For tests, and for those who want to compute more: the model, and what is shown.
-window.gearmesh = { problemOf, simulate, view, studyDots, studyCase, pairOf, result: () => result, course: () => course, sweep };
+window.gearmesh = { diagram, problemOf, simulate, view, studyDots, studyCase, studyBranches, studySpecialPoints, pairOf, result: () => result, course: () => course, sweep };

@@ -40,6 +40,34 @@ function studyDots(variant) {
   return found;
 }
 
+// The branches of orbits of a variant, each with points [ν_s, y_max, y_min, stability] in arrays.
+function studyBranches(variant) {
+  const row = rowOf(variant), found = new Map();
+  const { branch_variant: variants, branch_number: numbers } = NUMBERS;
+  for (let i = 0; variants && i < variants.length; i++) {
+    if (variants[i] !== row) continue;
+    if (!found.has(numbers[i])) found.set(numbers[i], { nu: [], max: [], min: [], stability: [] });
+    const branch = found.get(numbers[i]);
+    branch.nu.push(NUMBERS.branch_nu[i]);
+    branch.max.push(NUMBERS.branch_max[i]);
+    branch.min.push(NUMBERS.branch_min[i]);
+    branch.stability.push(NUMBERS.branch_stability[i]);
+  }
+  return [...found.values()];
+}
+
+function studySpecialPoints(variant) {
+  const row = rowOf(variant), found = [];
+  for (let i = 0; NUMBERS.special_variant && i < NUMBERS.special_variant.length; i++) {
+    if (NUMBERS.special_variant[i] !== row) continue;
+    found.push({
+      kind: STUDY.kinds[NUMBERS.special_kind[i]], periods: NUMBERS.special_periods[i],
+      nu: NUMBERS.special_nu[i], max: NUMBERS.special_max[i], min: NUMBERS.special_min[i],
+    });
+  }
+  return found;
+}
+
 // What the study has at a variant and a frequency, null off its grid.
 function studyCase(variant, nu) {
   const row = rowOf(variant), size = NUMBERS.nu.length;

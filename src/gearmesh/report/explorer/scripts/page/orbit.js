@@ -48,7 +48,8 @@ class Plane {
     frame.regions(pen, theme, problem.backlash, "x");
     pen.within(frame.x, frame.y, frame.width, frame.height, () => {
       pen.line([frame.x, frame.toY(0), frame.x + frame.width, frame.toY(0)], theme.line);
-      pen.line(frame.points(result.y.length, (i) => result.y[i], (i) => result.v[i]), colour, 1.1);
+      // Every second sample will do, and keeps the drag smooth.
+      pen.line(frame.points(result.y.length >> 1, (i) => result.y[2 * i], (i) => result.v[2 * i]), colour, 1.1);
       const { strobes } = result;
       for (let n = problem.periods - problem.keptPeriods; n <= problem.periods; n++) {
         pen.marker("circle", frame.toX(strobes[2 * n]), frame.toY(strobes[2 * n + 1]), 2.5, theme.ink, theme.normal);

@@ -35,12 +35,12 @@ class CanvasPen {
     }
   }
 
-  // An open circle, or a triangle that points up or down.
+  // An open circle, a square, a diamond, or a triangle that points up or down.
   marker(shape, x, y, radius, stroke, fill) {
     const { context } = this;
     context.beginPath();
     if (shape === "circle") context.arc(x, y, radius, 0, 2 * Math.PI);
-    else triangle(shape, x, y, radius).forEach(([a, b], i) => i ? context.lineTo(a, b) : context.moveTo(a, b));
+    else corners(shape, x, y, radius).forEach(([a, b], i) => i ? context.lineTo(a, b) : context.moveTo(a, b));
     context.closePath();
     context.setLineDash([]);
     context.fillStyle = fill;
@@ -106,7 +106,7 @@ class SvgPen {
   marker(shape, x, y, radius, stroke, fill) {
     const look = `stroke="${stroke}" stroke-width="1.5" fill="${fill}"`;
     if (shape === "circle") this.parts.push(`<circle cx="${short(x)}" cy="${short(y)}" r="${radius}" ${look}/>`);
-    else this.parts.push(`<path d="M${triangle(shape, x, y, radius).map((p) => p.map(short).join(" ")).join("L")}z" ${look}/>`);
+    else this.parts.push(`<path d="M${corners(shape, x, y, radius).map((p) => p.map(short).join(" ")).join("L")}z" ${look}/>`);
   }
 
   text(words, x, y, colour, { align = "left", baseline = "alphabetic", size = 12, turn = 0, bold = false } = {}) {
@@ -136,9 +136,11 @@ class SvgPen {
   }
 }
 
-function triangle(shape, x, y, radius) {
+function corners(shape, x, y, r) {
+  if (shape === "diamond") return [[x, y - 1.3 * r], [x + 1.3 * r, y], [x, y + 1.3 * r], [x - 1.3 * r, y]];
+  if (shape === "square") return [[x - r, y - r], [x + r, y - r], [x + r, y + r], [x - r, y + r]];
   const up = shape === "up" ? 1 : -1;
-  return [[x, y - up * radius], [x + radius, y + up * 0.8 * radius], [x - radius, y + up * 0.8 * radius]];
+  return [[x, y - up * r], [x + r, y + up * 0.8 * r], [x - r, y + up * 0.8 * r]];
 }
 
 function short(x) {

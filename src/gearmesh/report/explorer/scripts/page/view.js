@@ -58,7 +58,7 @@ function readHash(hash) {
     if ((name === "variant" || name === "beside") && rowOf(text) >= 0) view[name] = text;
     else if (name === "nu") setNu(parseFloat(text));
     else if (name === "periods" && [2, 5, 21].includes(+text)) view.periods = +text;
-    else if (name in CONTROLS) change(name, parseFloat(text));
+    else if (Object.hasOwn(CONTROLS, name)) change(name, parseFloat(text));
   }
 }
 

@@ -4,9 +4,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from gearmesh.dynamics.starts import coordinates
+from gearmesh.dynamics.starts import initial_coordinates
 from gearmesh.errors import NoOrbit
-from gearmesh.model.motion import state_at
 from gearmesh.model.problem import Problem
 from gearmesh.solvers.reduced.period_map import passage
 
@@ -74,9 +73,8 @@ def lyapunov_spectrum(
 
 def spectrum_of(problem: Problem, periods: int, transient: int) -> LyapunovSpectrum:
     """Return the Lyapunov exponents of a run; not-a-number if it runs away."""
-    state = coordinates(problem.initial_state or state_at(problem))
     try:
-        return lyapunov_spectrum(problem, state, periods, transient)
+        return lyapunov_spectrum(problem, initial_coordinates(problem), periods, transient)
     except NoOrbit:
         nothing = np.full(4, np.nan)
         return LyapunovSpectrum(nothing, nothing, nothing, np.nan)

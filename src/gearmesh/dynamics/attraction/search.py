@@ -1,0 +1,133 @@
+"""The attractors of one gear pair at one frequency, as far as they are known."""
+
+import math
+
+import numpy as np
+
+from gearmesh.dynamics.attraction.attractors import (
+    LOST,
+    NEUTRAL,
+    Attractor,
+    stable_orbits_near,
+)
+from gearmesh.dynamics.attraction.envelopes import RISE, envelope_of
+from gearmesh.dynamics.attraction.irregular import irregular_kinds
+from gearmesh.dynamics.attraction.regions import Region, region_of
+from gearmesh.dynamics.orbits import Orbit
+from gearmesh.model.problem import Problem
+from gearmesh.solvers.reduced.ensembles import laws_of
+
+_TRIED = 64  # states near which orbits are searched for
+_LOOKS = 2  # searches among them
+_MOST_SHALLOW = 0.2  # in y_st
+
+
+class Search:
+    """The attractors that are known, and the means to recognise them.
+
+    Attributes
+    ----------
+    problem : Problem
+        All states are taken at its initial phase.
+    laws : ndarray, shape (1,)
+        See `gearmesh.solvers.reduced.ensembles`.
+    envelope : Envelope or None
+    attractors : list of Attractor
+    """
+
+    def __init__(self, problem: Problem) -> None:
+        self.problem = problem
+        self.laws = laws_of([problem])
+        self.envelope = envelope_of(problem)
+        self.attractors: list[Attractor] = []
+        self._regions: list[tuple[int, Region]] = []
+        self._shallow = 0.0
+
+    def label(self, found: Attractor) -> int:
+        """Return the index of an attractor, which is new or known."""
+        for i, known in enumerate(self.attractors):
+            if known.same_as(found):
+                return i
+        self.attractors.append(found)
+        return len(self.attractors) - 1
+
+    def neutral(self) -> int:
+        """Return the index of neutral motion."""
+        constant = self.envelope.time_constant if self.envelope else math.inf
+        rate = -1.0 / (constant * self.problem.period)
+        return self.label(Attractor(NEUTRAL, exponent=rate, time_constant=constant))
+
+    def captured(self, states: np.ndarray) -> np.ndarray:
+        """Return the index of the attractor that holds each state, -1 if none does."""
+        labels = np.full(len(states), -1)
+        failed = np.isnan(states[:, 0])
+        if failed.any():
+            labels[failed] = self.label(Attractor(LOST))
+        for i, region in self._regions:
+            open_ = np.flatnonzero(labels < 0)
+            labels[open_[region.holds(states[open_])]] = i
+        if self.envelope:
+            open_ = np.flatnonzero(labels < 0)
+            inside = open_[self.envelope.is_above(states[open_], -self._shallow)]
+            if inside.size:
+                labels[inside] = self.neutral()
+        return labels
+
+    def look(self, states: np.ndarray) -> None:
+        """Search for stable orbits near states of runs that are not over."""
+        some = states[:: math.ceil(len(states) / _TRIED)]
+        for orbit in stable_orbits_near(self.problem, some, _LOOKS):
+            self._add(orbit)
+
+    def _add(self, orbit: Orbit) -> None:
+        """Add a stable orbit to what is known."""
+        known = len(self.attractors)
+        i = self.label(Attractor.of(orbit))
+        if i == known:
+            self._regions.append((i, region_of(orbit, self.problem.initial_phase)))
+
+    def learn(self, labels: np.ndarray, margins: np.ndarray) -> None:
+        """Learn from finished runs how shallow contact losses are that vanish in the end.
+
+        Parameters
+        ----------
+        labels : ndarray, shape (n,)
+        margins : ndarray, shape (n,)
+            Highest margin of each run after its first periods.
+        """
+        if self.envelope is None:
+            return
+        index = self.neutral()
+        kept = [margins[labels != index]]
+        kept += [self.envelope.margins(region.points) for _, region in self._regions]
+        highest = float(np.concatenate(kept).max(initial=-math.inf))
+        if (labels == index).any():
+            self._shallow = max(0.0, min(_MOST_SHALLOW, -0.5 * highest))
+
+    def classified(self, states: np.ndarray, before: np.ndarray) -> np.ndarray:
+        """Return the attractors of motions that no orbit holds after the transient.
+
+        Parameters
+        ----------
+        states : ndarray, shape (n, 4)
+        before : ndarray, shape (n,)
+            Margins half a transient earlier.
+        """
+        labels = np.full(len(states), -1)
+        if self.envelope and any(self.problem.lubricant):
+            rising = self.envelope.margins(states) > RISE * before
+            if rising.any():
+                labels[rising] = self.neutral()
+        open_ = np.flatnonzero(labels < 0)
+        if open_.size:
+            problems = [self.problem] * open_.size
+            kinds, rates = irregular_kinds(problems, self.laws, states[open_])
+            for kind in set(kinds):
+                are = np.array([one == kind for one in kinds])
+                rate = float(np.mean(rates[are]))
+                labels[open_[are]] = (
+                    self.neutral()
+                    if kind == NEUTRAL
+                    else self.label(Attractor(kind, exponent=rate))
+                )
+        return labels

@@ -1,0 +1,365 @@
+"""The equations of motion as a list of operations on Taylor coefficients.
+
+`gearmesh.model.motion` is evaluated once for each branch of the laws with numbers that record what
+is done with them. A sum of numbers stays a sum; a product, a sine, a square root become a row of
+the table of series with an operation that gives its coefficient of order k from those of its
+operands (Jorba and Zou, Experimental Mathematics 14, 2005). The compiled solver
+(`gearmesh.solvers.full.series`) carries out the operations and knows no law.
+"""
+
+from collections.abc import Iterable, Mapping
+from dataclasses import replace
+from functools import lru_cache
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from gearmesh.model import motion
+from gearmesh.model.contact import CONTACT_LOSS, INVERSE_MESH, NORMAL_MESH
+from gearmesh.model.mesh import backlash
+from gearmesh.model.problem import Problem
+from gearmesh.model.stiffness import TURN
+from gearmesh.solvers.full.coordinates import embedding, signs_act
+from gearmesh.solvers.full.roots import MAX_DEGREE
+
+COORDINATES, RATES = 0, 6
+TIME, DIRECTION, SIGNS = range(12, 15)
+Y, V, SWING, BRACKET, GAP, CONTACT, ELASTIC, FRICTION, STIFFNESS, NORMAL = range(15, 25)
+TRANSMISSION, BEARING_3, BEARING_2 = range(25, 28)
+FIRST_FREE = 28
+"""Rows of the table of series.
+
+The first six are the coordinates, the next six their rates. TIME counts mesh periods. DIRECTION is
+the sign of y', SIGNS the product of both signs of eq. (6). V and BRACKET are the rates of Y and
+SWING. GAP is y + s(t). CONTACT and NORMAL are the force of flanks that touch, and what of it acts
+(`gearmesh.model.motion.Forces`). TRANSMISSION is the transmission error, BEARING_3 and BEARING_2
+are what the bodies exert on their bearings along the mesh line.
+"""
+
+SUM, PRODUCT, WAVE, SINE, ROOT, ROUND, RATE, ACCELERATE = range(8)
+"""Operations. WAVE is the sine and cosine of an angle that is linear in time."""
+
+CODE, OUT, FIRST, SECOND, DEGREE = range(5)
+"""Columns of an operation: what it does, the row that it writes, and its operands.
+
+The operands are rows, or for SUM and ACCELERATE the ends of a range of summands. The degree is that
+in time of the first operand of PRODUCT.
+"""
+
+N_BRANCHES = 12
+"""Branches of a segment: three regimes, sticking or not, parted or not (`branch_of`)."""
+
+
+class Tape(NamedTuple):
+    """Operations of all branches, as the compiled solver takes them.
+
+    Attributes
+    ----------
+    operations : ndarray of int, shape (n, 5)
+        With the columns `CODE` to `DEGREE`.
+    numbers : ndarray, shape (n, 2)
+        The constant summand of each operation, and for WAVE the rate of its angle.
+    rows : ndarray of int, shape (m,)
+    factors : ndarray, shape (m,)
+        The summands: rows and their factors.
+    branches : ndarray of int, shape (`N_BRANCHES` * segments, 4)
+        Where the operations of a branch begin: of y, of the accelerations, of the measured forces;
+        and where they end. Branches that cannot occur are zero.
+    """
+
+    operations: np.ndarray
+    numbers: np.ndarray
+    rows: np.ndarray
+    factors: np.ndarray
+    branches: np.ndarray
+
+    @property
+    def height(self) -> int:
+        """Number of rows that the table of series needs."""
+        return max(FIRST_FREE, int(self.operations[:, OUT].max()) + 2)
+
+
+class _Traced:
+    """A sum of rows with factors, and a constant."""
+
+    __slots__ = ("constant", "terms", "trace")
+    __array_ufunc__ = None  # numpy numbers leave the arithmetic to this class
+
+    def __init__(self, trace: "_Trace", terms: Mapping[int, float], constant: float = 0.0) -> None:
+        self.trace, self.terms, self.constant = trace, terms, constant
+
+    def __add__(self, other: Any) -> "_Traced":
+        if not isinstance(other, _Traced):
+            return _Traced(self.trace, self.terms, self.constant + float(other))
+        terms = dict(self.terms)
+        for row, factor in other.terms.items():
+            total = terms.get(row, 0.0) + factor
+            if total == 0.0:
+                del terms[row]
+            else:
+                terms[row] = total
+        return _Traced(self.trace, terms, self.constant + other.constant)
+
+    def __mul__(self, other: Any) -> "_Traced":
+        if isinstance(other, _Traced):
+            return self.trace.product(self, other)
+        factor = float(other)
+        if factor == 0.0:
+            return _Traced(self.trace, {})
+        if factor == 1.0:
+            return self
+        terms = {row: factor * value for row, value in self.terms.items()}
+        return _Traced(self.trace, terms, factor * self.constant)
+
+    def __neg__(self) -> "_Traced":
+        return self * -1.0
+
+    def __sub__(self, other: Any) -> "_Traced":
+        return self + -other
+
+    def __rsub__(self, other: Any) -> "_Traced":
+        return -self + other
+
+    def __truediv__(self, number: float) -> "_Traced":
+        return _Traced(
+            self.trace,
+            {row: value / number for row, value in self.terms.items()},
+            self.constant / number,
+        )
+
+    __radd__, __rmul__ = __add__, __mul__
+
+    def __abs__(self) -> "_Traced":
+        if self.terms.keys() != {V} or self.constant != 0.0:
+            raise TypeError("only the sign of y' is known: abs takes nothing else")
+        return _Traced(self.trace, {DIRECTION: 1.0}) * self
+
+    def __round__(self) -> "_Traced":
+        return self.trace.single(ROUND, self)
+
+    def sqrt(self) -> "_Traced":
+        return self.trace.single(ROOT, self)
+
+    def sin(self) -> "_Traced":
+        return self.trace.wave(self)[0]
+
+    def cos(self) -> "_Traced":
+        return self.trace.wave(self)[1]
+
+
+class _Trace:
+    """The operations recorded so far, each only once."""
+
+    def __init__(self) -> None:
+        self.operations: list[tuple[int, int, tuple[Any, ...]]] = []
+        self.degrees = {TIME: 1, DIRECTION: 0, SIGNS: 0}
+        self._known: dict[tuple[Any, ...], int] = {}
+        self._free = FIRST_FREE
+
+    def row(self, row: int) -> _Traced:
+        return _Traced(self, {row: 1.0})
+
+    def _result(self, code: int, operands: tuple[Any, ...], degree: int, rows: int = 1) -> int:
+        key = (code, *operands)
+        if key not in self._known:
+            self._known[key] = out = self._free
+            self._free += rows
+            self.operations.append((code, out, operands))
+            for row in range(out, out + rows):
+                self.degrees[row] = degree
+        return self._known[key]
+
+    def _degree(self, terms: Iterable[int]) -> int:
+        return max((self.degrees.get(row, MAX_DEGREE) for row in terms), default=0)
+
+    def _row_of(self, terms: Mapping[int, float]) -> tuple[int, float]:
+        """Return a row and a factor that together are a sum without a constant."""
+        factor = next(iter(terms.values()))
+        scaled = {row: value / factor for row, value in terms.items()}
+        return self._row_exactly(_Traced(self, scaled)), factor
+
+    def product(self, a: _Traced, b: _Traced) -> _Traced:
+        rest = _Traced(self, b.terms) * a.constant + _Traced(self, a.terms) * b.constant
+        rest += a.constant * b.constant
+        if not a.terms or not b.terms:
+            return rest
+        (row_a, factor_a), (row_b, factor_b) = self._row_of(a.terms), self._row_of(b.terms)
+        low, high = sorted((row_a, row_b), key=lambda row: (self.degrees.get(row, MAX_DEGREE), row))
+        degree = min(MAX_DEGREE, self._degree([low]) + self._degree([high]))
+        operands = (low, high, self.degrees.get(low, MAX_DEGREE))
+        found = self._result(PRODUCT, operands, degree)
+        return rest + _Traced(self, {found: factor_a * factor_b})
+
+    def _row_exactly(self, value: _Traced) -> int:
+        """Return the row of a number."""
+        if value.constant == 0.0 and list(value.terms.values()) == [1.0]:
+            return next(iter(value.terms))
+        operands = (tuple(sorted(value.terms.items())), value.constant)
+        return self._result(SUM, operands, self._degree(value.terms))
+
+    def single(self, code: int, value: _Traced) -> _Traced:
+        """Return what an operation makes of one number."""
+        degree = 0 if code == ROUND else MAX_DEGREE
+        return self.row(self._result(code, (self._row_exactly(value),), degree))
+
+    def wave(self, angle: _Traced) -> tuple[_Traced, _Traced]:
+        """Return sine and cosine of an angle."""
+        if not angle.terms:
+            return (
+                _Traced(self, {}, float(np.sin(angle.constant))),
+                _Traced(self, {}, float(np.cos(angle.constant))),
+            )
+        if angle.terms.keys() == {TIME}:
+            operands: tuple[Any, ...] = (angle.terms[TIME], angle.constant)
+            out = self._result(WAVE, operands, MAX_DEGREE, rows=2)
+        else:
+            out = self._result(SINE, (self._row_exactly(angle),), MAX_DEGREE, rows=2)
+        return self.row(out), self.row(out + 1)
+
+    def name(self, row: int, value: Any) -> _Traced:
+        """Give a number, a float too, a row of its own."""
+        terms = value.terms if isinstance(value, _Traced) else {}
+        constant = value.constant if isinstance(value, _Traced) else float(value)
+        self.operations.append((SUM, row, (tuple(sorted(terms.items())), constant)))
+        return self.row(row)
+
+
+def branch_of(regime: int, sticks: bool, parted: bool) -> int:
+    """Return the place of a branch among those of its segment."""
+    return (regime + 1) * 4 + sticks * 2 + parted
+
+
+def tape(problem: Problem, segments: Iterable[float]) -> Tape:
+    """Record the equations of motion of `problem`.
+
+    Parameters
+    ----------
+    problem : Problem
+    segments : iterable of float
+        A mesh phase in each segment.
+    """
+    # The laws know the time by the angles of the wheels only: in mesh periods it is the same for
+    # all mesh frequencies.
+    laws = replace(problem, nu=TURN, revolutions=1, kept_revolutions=0, initial_state=None)
+    return _recorded(laws, tuple(segments))
+
+
+@lru_cache(maxsize=256)
+def _recorded(problem: Problem, segments: tuple[float, ...]) -> Tape:
+    columns = embedding(problem)
+    operations: list[tuple[Any, ...]] = []
+    terms: list[tuple[int, float]] = []
+    branches: list[tuple[int, ...]] = []
+    sticks = (False, True) if signs_act(problem) else (False,)
+    for segment in segments:
+        found = [(0,) * 4] * N_BRANCHES
+        for regime in (CONTACT_LOSS, NORMAL_MESH, INVERSE_MESH):
+            can_part = problem.terms.non_adhesive and regime != CONTACT_LOSS
+            for stick in sticks:
+                for parted in (False, True) if can_part else (False,):
+                    mode = motion.Mode(regime, segment, 1, 0 if stick else 1, parted)
+                    parts = _record(problem, mode, columns, len(sticks) > 1)
+                    places = [len(operations)]
+                    for part in parts:
+                        operations += [_encoded(operation, terms) for operation in part]
+                        places.append(len(operations))
+                    found[branch_of(regime, stick, parted)] = tuple(places)
+        branches += found
+    return Tape(
+        np.array([operation[:5] for operation in operations], np.uint64),
+        np.array([operation[5:] for operation in operations], np.float64),
+        np.array([row for row, _ in terms], np.uint64),
+        np.array([factor for _, factor in terms], np.float64),
+        np.array(branches, np.int64),
+    )
+
+
+def _record(
+    problem: Problem, mode: motion.Mode, columns: np.ndarray, signed: bool
+) -> list[list[tuple[int, int, tuple[Any, ...]]]]:
+    """Return the operations of one branch in three parts: motion, forces and outputs."""
+    trace = _Trace()
+    time = trace.row(TIME)
+    n = columns.shape[1]
+    q, v = (
+        [
+            _Traced(trace, {first + i: float(row[i]) for i in range(n) if row[i]})
+            if row.any()
+            else 0.0
+            for row in columns
+        ]
+        for first in (COORDINATES, RATES)
+    )
+    y = trace.name(Y, motion.displacement(problem, time, q))
+    trace.operations.append((RATE, V, (Y,)))
+    if signed:
+        trace.name(SWING, motion.run_out_integral(problem, time, q))
+        trace.operations.append((RATE, BRACKET, (SWING,)))
+    if problem.terms.backlash_harmonics:
+        trace.name(GAP, y + backlash(problem, time))
+    moved = len(trace.operations)
+    if signed and mode.slip_sign:
+        mode = replace(mode, slip_sign=trace.row(SIGNS))
+    mesh = motion.forces(problem, time, q, v, y, trace.row(V), mode)
+    wanted = [Y, V, SWING, BRACKET, GAP]
+    if problem.terms.non_adhesive:
+        trace.name(CONTACT, mesh.contact)
+        wanted.append(CONTACT)
+    if signed:
+        trace.name(ELASTIC, mesh.elastic)
+        trace.name(FRICTION, mesh.friction)
+        wanted += [ELASTIC, FRICTION]
+    six = motion.accelerations_under(problem, time, q, v, mesh)
+    for i in range(n):
+        total = sum(
+            (six[j] * float(columns[j, i]) for j in range(6) if columns[j, i]),
+            _Traced(trace, {}),
+        ) / float(np.sum(columns[:, i] ** 2))
+        operands = (tuple(sorted(total.terms.items())), total.constant)
+        trace.operations.append((ACCELERATE, COORDINATES + i, operands))
+    forced = len(trace.operations)
+    if not signed:
+        trace.name(FRICTION, mesh.friction)
+    trace.name(STIFFNESS, mesh.stiffness)
+    trace.name(NORMAL, mesh.normal)
+    trace.name(TRANSMISSION, q[motion.ROTATION_3] + q[motion.ROTATION_2])
+    bearing_3, bearing_2, *_ = motion.bearing_pulls(problem, q, v)
+    trace.name(BEARING_3, bearing_3)
+    trace.name(BEARING_2, bearing_2)
+    everything = trace.operations
+    needed = _needed(everything[:forced], wanted)
+    outputs = _needed(everything, range(STIFFNESS, FIRST_FREE)) | _needed(everything, [FRICTION])
+    return [
+        [everything[i] for i in sorted(needed) if i < moved],
+        [everything[i] for i in sorted(needed) if i >= moved],
+        [everything[i] for i in sorted(outputs - needed) if i >= moved],
+    ]
+
+
+def _needed(operations: list[tuple[int, int, tuple[Any, ...]]], rows: Iterable[int]) -> set[int]:
+    """Return the places of the operations that `rows` and the accelerations need."""
+    wanted, found = set(rows), set()
+    for i in range(len(operations) - 1, -1, -1):
+        code, out, operands = operations[i]
+        second = code in (WAVE, SINE) and out + 1 in wanted
+        if code == ACCELERATE or out in wanted or second:
+            found.add(i)
+            if code in (SUM, ACCELERATE):
+                wanted.update(row for row, _ in operands[0])
+            elif code != WAVE:
+                wanted.update(operands[:2])
+    return found
+
+
+def _encoded(
+    operation: tuple[int, int, tuple[Any, ...]], terms: list[tuple[int, float]]
+) -> tuple[Any, ...]:
+    code, out, operands = operation
+    if code in (SUM, ACCELERATE):
+        first = len(terms)
+        terms += operands[0]
+        return code, out, first, len(terms), 0, operands[1], 0.0
+    if code == WAVE:
+        return code, out, 0, 0, 0, operands[1], operands[0]
+    row, other, degree = (*operands, 0, 0)[:3]
+    return code, out, row, other, degree, 0.0, 0.0

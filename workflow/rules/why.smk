@@ -1,0 +1,102 @@
+# Why it jumps: basins, sweeps, exponents and curves of special points of the paper's pair, and the
+# notebook that draws them.
+rule basins:
+    input:
+        read=[PLACES.branches],
+        again=PLAN.again("basins"),
+    output:
+        PLACES.mechanism("basins"),
+        PLACES.mechanism("phases"),
+    log:
+        PLACES.log("basins"),
+    benchmark:
+        PLACES.benchmark("basins")
+    params:
+        made_of=PLAN.made_of("basins"),
+    shell:
+        'python -m gearmesh.pipeline basins "$STUDY" {params.made_of} --read {input.read}'
+        " 2>&1 | tee {log}"
+
+
+rule sweeps:
+    input:
+        again=PLAN.again("sweeps"),
+    output:
+        PLACES.mechanism("sweeps"),
+        PLACES.mechanism("design_map"),
+    log:
+        PLACES.log("sweeps"),
+    benchmark:
+        PLACES.benchmark("sweeps")
+    params:
+        made_of=PLAN.made_of("sweeps"),
+    shell:
+        'python -m gearmesh.pipeline sweeps "$STUDY" {params.made_of} 2>&1 | tee {log}'
+
+
+rule lyapunov:
+    input:
+        again=PLAN.again("lyapunov"),
+    output:
+        PLACES.mechanism("lyapunov"),
+    log:
+        PLACES.log("lyapunov"),
+    benchmark:
+        PLACES.benchmark("lyapunov")
+    params:
+        made_of=PLAN.made_of("lyapunov"),
+    shell:
+        'python -m gearmesh.pipeline lyapunov "$STUDY" {params.made_of} 2>&1 | tee {log}'
+
+
+rule special_curves:
+    input:
+        read=[PLACES.special_points],
+        again=PLAN.again("special_curves"),
+    output:
+        PLACES.mechanism("special_curves"),
+    log:
+        PLACES.log("special_curves"),
+    benchmark:
+        PLACES.benchmark("special_curves")
+    params:
+        made_of=PLAN.made_of("special_curves"),
+    shell:
+        'python -m gearmesh.pipeline special_curves "$STUDY" {params.made_of} --read {input.read}'
+        " 2>&1 | tee {log}"
+
+
+rule bands:
+    input:
+        again=PLAN.again("bands"),
+    output:
+        PLACES.mechanism("bands"),
+    log:
+        PLACES.log("bands"),
+    benchmark:
+        PLACES.benchmark("bands")
+    params:
+        made_of=PLAN.made_of("bands"),
+    shell:
+        'python -m gearmesh.pipeline bands "$STUDY" {params.made_of} 2>&1 | tee {log}'
+
+
+rule why:
+    input:
+        read=[
+            PLACES.branches,
+            PLACES.special_points,
+            PLACES.bifurcation,
+            [PLACES.mechanism(name) for name in paths.MECHANISMS],
+        ],
+        again=PLAN.again("why"),
+    output:
+        PLACES.why_files,
+    log:
+        PLACES.executed_notebook(paths.WHY),
+    benchmark:
+        PLACES.benchmark("why")
+    params:
+        made_of=PLAN.made_of("why"),
+    shell:
+        'python -m gearmesh.pipeline why "$STUDY" {params.made_of} --read {input.read}'
