@@ -14,7 +14,8 @@ REST = (1.0, 0.0, -2.0, 0.0)
 
 
 @pytest.mark.parametrize(
-    ("name", "nu", "periods"), [("d-lubricant", 0.81, 1), ("c-material", 0.9, 1)]
+    ("name", "nu", "periods"),
+    [("d-lubricant", 0.81, 1), ("c-material", 0.9, 1), ("c-lubricant", 0.66, 2)],
 )
 def test_of_an_orbit_they_are_those_of_its_multipliers(name, nu, periods):
     orbit = find_orbit(problem(nu, name, **HEAVY), periods)

@@ -41,10 +41,10 @@ def parameter_cell(notebook):
 
 def test_every_figure_but_the_drawing_has_a_notebook_and_so_has_the_identification(root):
     found = sorted(path.stem for path in (root / paths.NOTEBOOKS).glob("*.ipynb"))
-    assert found == sorted({*paths.FIGURE_NAMES, "identification"} - {"fig1"})
+    assert found == sorted({*paths.FIGURE_NAMES, paths.WHY, "identification"} - {"fig1"})
 
 
-@each_notebook
+@pytest.mark.parametrize("name", [*paths.NOTEBOOK_NAMES, paths.WHY])
 def test_a_notebook_is_committed_without_outputs(notebook):
     for cell in code_cells(notebook):
         assert cell.outputs == []

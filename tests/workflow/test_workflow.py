@@ -68,7 +68,7 @@ def test_a_run_prints_its_cases_and_its_end(smoke):
         assert f"gearmesh: {letter}: " in smoke.output
     assert "c: 96 computed, 0 kept" in smoke.output or "computed, 0 kept" in smoke.output
     counts = smoke.output[smoke.output.index("claims: ") :].splitlines()[0]
-    assert sum(int(word) for word in counts.split() if word.isdigit()) == 34
+    assert sum(int(word) for word in counts.split() if word.isdigit()) == 35
     for name in ("printed", *FIGURES):
         assert f"\n{name}: " in smoke.output
 
@@ -130,8 +130,10 @@ def test_neither_the_times_of_sources_nor_snakemake_s_records_matter(smoke, tmp_
 # What an edit reruns: (what is edited, how, which jobs run).
 END = {"ledger", "notebook_pages", "report", "crate", "hashes", "verdict"}
 CASES = {f"cases-{letter}" for letter in LETTERS}
-AFTER_CASES = {"datasets", *FIGURES, *END}
-EVERYTHING = {*CASES, "thresholds", "printed", *AFTER_CASES}
+AFTER_CASES = {"datasets", "explorer", "why", *FIGURES, *END}
+AFTER_BRANCHES = {"basins", "special_curves", "explorer", "why", *END}
+MECHANISMS = {"orbits-c", "branches", "sweeps", "bands", "lyapunov", *AFTER_BRANCHES}
+EVERYTHING = {*CASES, "thresholds", "printed", *AFTER_CASES, *MECHANISMS}
 STATED = {"identified_figures", *EVERYTHING}
 AFTER_THRESHOLDS = {"thresholds", "printed", *FIGURES, *END}
 REPORTED = {"report", "crate", "hashes", "verdict"}
@@ -146,12 +148,17 @@ INCREMENTS = {
     "shared check": ("src/gearmesh/reproduction/claims/fig5.py", '"""', '""" ',
                      {"fig5", "fig6", "fig7", *END}),
     "style": ("src/gearmesh/reproduction/figures/gearmesh.mplstyle", "#", "# more\n#",
-              {"fig1", "identified_figures", *FIGURES, *END}),
+              {"fig1", "identified_figures", "why", *FIGURES, *END}),
     "template": ("src/gearmesh/report/templates/claims.html.j2", "<t", " <t", {*FIGURES, *END}),
     "caption": ("workflow/report/fig4.rst", "", "More. ", REPORTED),
     "identified": ("config/identified.yaml", "", "# more\n", {"identified_figures", *REPORTED}),
     "thresholds": ("src/gearmesh/reproduction/thresholds.py", '"""', '""" ', AFTER_THRESHOLDS),
-    "datasets": ("src/gearmesh/data/datasets.py", '"""', '""" ', {*AFTER_CASES}),
+    "datasets": ("src/gearmesh/data/datasets.py", '"""', '""" ',
+                 {"branches", *AFTER_CASES, *AFTER_BRANCHES}),
+    "orbits": ("src/gearmesh/dynamics/branches.py", '"""', '""" ',
+               {"orbits-c", "branches", *AFTER_BRANCHES}),
+    "why": ("notebooks/why.ipynb", "## Basins", "## The basins",
+            {"why", "notebook_pages", *REPORTED}),
     "solver": ("src/gearmesh/solvers/simulation.py", '"""', '""" ', EVERYTHING),
     "one stage": ("src/gearmesh/pipeline/stages/claims.py", '"""Check the numbers', '"""Check all',
                   {"printed", "ledger", *REPORTED}),

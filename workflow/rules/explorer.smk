@@ -1,4 +1,8 @@
 # The explorer: a page beside the report with the numbers of the study, and a solver.
+localrules:
+    explorer,
+
+
 rule explorer:
     input:
         read=[

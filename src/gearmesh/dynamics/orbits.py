@@ -224,7 +224,10 @@ def find_orbit(problem: Problem, periods: int = 1, start: np.ndarray | None = No
         If no initial state leads to an orbit.
     """
     if not is_reducible(problem):
-        raise NoOrbit("orbits: run-out, profile deviation and Fourier stiffness are not covered")
+        raise NoOrbit(
+            "orbits: unequal wheels, run-out, profile deviation, Fourier stiffness and other "
+            "general terms are not covered"
+        )
     if start is not None:
         return correct(problem, np.asarray(start, float), periods)
     reason = ""

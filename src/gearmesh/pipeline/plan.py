@@ -198,7 +198,10 @@ _COMMITTED: dict[str, Callable[[], list[Path]]] = {
     "fig1": lambda: [_STYLE],
     "identified_figures": lambda: [_STYLE, layout.IDENTIFIED, layout.SETTINGS],
     "study_figures": lambda: [_STYLE],
-    "why": lambda: [paths.notebook(paths.WHY), _STYLE, _TEMPLATES / "points.html.j2"],
+    "why": lambda: [
+        *(paths.notebook(paths.WHY), _STYLE),
+        *(_TEMPLATES / name for name in ("points.html.j2", "parts.html.j2")),
+    ],
     "notebook_pages": lambda: [
         _TEMPLATES / name for name in ("notebook.html.j2", "base.html.j2", "report.css")
     ],

@@ -16,6 +16,8 @@ from gearmesh.reproduction.mechanisms.tables import Row
 KINDS = ("switching", "flip", "grazing_front", "grazing_back", "fold", "torus", "branch_point")
 """Kinds of special points in the order of the table."""
 
+_CLOSE = 2e-3  # in ν_s, to an end of a stable piece of a branch
+
 
 class Points:
     """The special points of a study, by variant, kind and place along the branch."""
@@ -72,11 +74,12 @@ def answers(
     thresholds : mapping
         `thresholds.json`: what five revolutions make of it.
     """
+    points = Points(rows)
     return {
-        "points": Points(rows),
+        "points": points,
         "five_of": lambda observable, name: _threshold(thresholds, observable, name),
         "five_of_jump": lambda name: _first_jump(thresholds, name),
-        "doubled": _doubled(datasets["branches"]),
+        "doubled": _doubled(datasets["branches"], points),
         "starts": _starts(datasets["phases"]),
         "basins": _shares(datasets["basins"]),
         "sweep": _sweep_jumps(datasets["sweeps"]),
@@ -102,14 +105,25 @@ def _first_jump(thresholds: Mapping[str, Any], name: str) -> float:
     return float(found[0]["nu"]) if isinstance(found, list) and found else np.nan
 
 
-def _doubled(branches: xr.Dataset) -> dict[str, tuple[float, float]]:
-    """Return the range of ν_s in which stable orbits of period 2 exist, for each variant."""
-    chosen = branches.isel(
-        point=np.flatnonzero((branches["periods"] == 2) & (branches["stability"] == 1))
-    )
-    names = dict.fromkeys(map(str, chosen["variant"].values))
-    ranges = {name: chosen["nu"].values[chosen["variant"].values == name] for name in names}
-    return {name: (float(nu.min()), float(nu.max())) for name, nu in ranges.items()}
+def _doubled(branches: xr.Dataset, points: Points) -> dict[str, float]:
+    """Return down to which ν_s the orbit of period 2 from the upper flip is stable, by variant.
+
+    That is the fold or the flip at which the stable piece of its branch ends; not-a-number if it
+    reaches beyond the range.
+    """
+    found = {}
+    double = branches.isel(point=np.flatnonzero(branches["periods"] == 2))
+    for name in dict.fromkeys(map(str, double["variant"].values)):
+        own = double.isel(point=np.flatnonzero(double["variant"] == name)).sortby("nu")
+        stable = own["nu"].values[own["stability"].values == 1]
+        ends = points.of(name, "fold", 2) + points.of(name, "flip", 2)
+        passed = [end for end in ends if stable.size and end < stable.max()]
+        # The stable piece that holds the greatest ν_s ends where no stable orbit is just below.
+        found[name] = max(
+            (end for end in passed if not ((stable < end) & (stable > end - _CLOSE)).any()),
+            default=np.nan,
+        )
+    return found
 
 
 def _starts(phases: xr.Dataset) -> dict[str, float]:

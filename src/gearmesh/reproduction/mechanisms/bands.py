@@ -57,6 +57,7 @@ def band(
     -------
     dict
         `below` and `above`: median spread in ⟨0.6; 0.8⟩ without the first jump, and from 1.1 on;
+        `lowest`: median of `low` in ⟨0.6; 0.8⟩ without the jumps;
         `smooth`: share of the steps in ν_s over which both edges change by at most `EDGE_STEP`;
         `growth`: greatest maximum near the first jump over the median elsewhere.
     """
@@ -68,6 +69,7 @@ def band(
     return {
         "below": float(np.median(spread[outside])),
         "above": float(np.median(spread[nu >= RANGES[1][0]])),
+        "lowest": float(np.median(low[band])),
         "smooth": float((steps <= EDGE_STEP).mean()),
         "growth": float(high[near].max() / np.median(high[band])),
     }

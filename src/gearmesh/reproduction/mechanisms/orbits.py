@@ -61,7 +61,7 @@ def _ends_at(branch: Branch, orbit: Orbit) -> bool:
     """Return whether an orbit at an end of the range is an end of a branch."""
     ends = branch.at(0), branch.at(-1)
     return any(
-        end.nu == orbit.nu and np.abs(end.found.state - orbit.found.state).max() < _SAME
+        max(abs(end.nu - orbit.nu), *np.abs(end.found.state - orbit.found.state)) < _SAME
         for end in ends
     )
 
