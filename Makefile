@@ -7,6 +7,9 @@ CORES ?=
 # Settings of the caller that would mix other packages or kernels into the environment.
 unexport PYTHONPATH PYTHONHOME PYTHONUSERBASE PIP_USER PIP_PREFIX PIP_TARGET PIP_ROOT JUPYTER_PATH
 
+# A user whom the system does not know may have no home folder; Snakemake asks for one.
+export HOME ?= $(CURDIR)/.venv
+
 BIN := .venv/bin
 STAMP := .venv/.installed
 BENCH_STAMP := .venv/.installed-bench
