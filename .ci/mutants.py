@@ -20,7 +20,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 TARGETS = {
-    "model": (["model/*.py"], ["tests/model"]),
+    "model": (["model/*.py"], ["tests/model", "tests/interface/test_geometry.py"]),
     "measures": (["reproduction/claims/*.py"], ["tests/reproduction"]),
     "layout": (["data/casefile.py", "data/manifest.py", "data/paths.py"], ["tests/data"]),
     "reruns": (

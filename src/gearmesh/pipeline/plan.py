@@ -185,7 +185,8 @@ def _commands() -> dict[str, str]:
     found: dict[str, str] = {}
     for command in commands:
         for name in _RUNS.findall(command):
-            found[name] = found.get(name, "") + command  # `report` has a rule for each kind of study
+            # `report` has a rule for each kind of study.
+            found[name] = found.get(name, "") + command
     return found
 
 
