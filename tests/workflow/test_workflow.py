@@ -13,6 +13,7 @@ from project import Project
 
 FIGURES = [f"fig{number}" for number in range(2, 8)]
 LETTERS = "abcdefgh"
+WHY = ("branches", "basins", "sweeps", "special_curves", "lyapunov", "design_map")
 
 
 @pytest.fixture
@@ -39,6 +40,25 @@ def test_everything_that_the_contract_lists_is_there(smoke):
     assert {path.name for path in smoke.path("results").iterdir()} == {"smoke"}
     measured = {path.stem for path in (smoke.study / "benchmarks").iterdir()}
     assert {*(f"cases-{letter}" for letter in LETTERS), "datasets", "figure-fig2"} <= measured
+
+
+def test_what_lies_behind_the_curves_is_there_and_explains_claims(smoke):
+    page = (smoke.study / "report/index.html").read_text(encoding="utf-8")
+    assert '<section id="why">' in page
+    for name in WHY:
+        assert f'<figure id="{name}">' in page
+        assert {f"figures/{name}.png", f"figures/{name}.svg"} <= smoke.results().keys()
+    assert (smoke.study / "report/notebooks/why.html").exists()
+    special = json.loads((smoke.study / "datasets/special_points.json").read_text())
+    assert {"variant", "kind", "nu", "periods"} <= special[0].keys()
+    own = {row["kind"]: row["nu"] for row in special if row["variant"] == "c-material"
+           and "parameters" not in row}  # fmt: skip
+    assert abs(own["switching"] - 0.6386300024579) < 1e-8
+    entries = json.loads((smoke.study / "claims.json").read_text(encoding="utf-8"))
+    mechanisms = {entry["id"]: entry["mechanism"] for entry in entries if "mechanism" in entry}
+    assert "0.638630" in mechanisms["F3.2"]
+    branches = xr.open_dataset(smoke.study / "datasets/branches.nc")
+    assert set(branches["variant"].values) == {"c-material", "c-lubricant"}
 
 
 def test_a_run_leaves_nothing_temporary(smoke):

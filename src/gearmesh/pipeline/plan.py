@@ -13,7 +13,7 @@ import shlex
 import sys
 import time
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field
 from functools import cache, cached_property
 from pathlib import Path
 
@@ -40,7 +40,7 @@ _FAR_FUTURE = 2**32 - 1
 """A time later than that of any result, in seconds: the year 2106."""
 
 
-@dataclass(frozen=True)
+@dataclass
 class Plan:
     """A study and the plan of its jobs.
 
@@ -54,6 +54,7 @@ class Plan:
 
     study: Study
     holding: frozenset[str] | None = None
+    _digests: dict[str, str] = field(default_factory=dict, repr=False)
 
     @cached_property
     def places(self) -> Places:
@@ -97,6 +98,12 @@ class Plan:
         *arguments : str
             Which of its jobs.
         """
+        job = job_name(stage, *arguments)
+        if job not in self._digests:  # asked for twice: to check the manifest, and to run
+            self._digests[job] = self._digest(stage, *arguments)
+        return self._digests[job]
+
+    def _digest(self, stage: str, *arguments: str) -> str:
         function = STAGES[stage]
         module = Path(function.__code__.co_filename)
         files, unused = _files(stage, *arguments)
@@ -339,10 +346,10 @@ def load(
         )
     _name_the_user()
     plan = Plan(load_study(str(path)))
-    load_settings(layout.SETTINGS)  # a mistake in it, or in the ledger, is reported before all jobs
-    if plan.study.claims:
-        load_ledger(plan.study.claims)
-    return replace(plan, holding=plan.check()) if main else plan
+    _ = plan.designs, plan.ledger  # a mistake in them is reported before all jobs
+    if main:
+        plan.holding = plan.check()
+    return plan
 
 
 def _name_the_user() -> None:
