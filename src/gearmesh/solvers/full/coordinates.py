@@ -68,9 +68,7 @@ def kinds_of_period(problem: Problem) -> tuple[list[float], np.ndarray]:
     ndarray of int, shape (periods + 1,)
         The place of each period's kind. Periods differ where the factors of single teeth do.
     """
-    middles = [
-        problem.initial_phase + 0.5 * (part.start + part.end) for part in segments(problem)
-    ]
+    middles = [problem.initial_phase + 0.5 * (part.start + part.end) for part in segments(problem)]
     if not problem.terms.tooth_factors:
         return middles, np.zeros(problem.periods + 1, np.int64)
     kinds: dict[tuple[tuple[int, ...], ...], int] = {}
