@@ -195,7 +195,7 @@ def test_no_two_places_share_an_id(page):
 
 
 def test_every_claim_is_in_the_ledger_table(page, entries):
-    assert [name for name in page.ids if re.fullmatch(r"[A-Z]\d+(\.\d+)?", name)] == [
+    assert [name for name in page.ids if re.fullmatch(r"[A-Z]\d+(\.\d+[a-z]?)?", name)] == [
         entry.id for entry in entries
     ]
     for entry in entries:

@@ -87,6 +87,7 @@ CLAIMS = {
     "F3.2": view(_MATERIAL, 0.63),
     "F3.3": view("h-lubricant", 0.79),
     "F3.4": view(_LUBRICANT, 0.72),
+    "F3.4b": view(_LUBRICANT, 0.61, periods=21),
     "F3.5": view(_LUBRICANT, 0.66),
     "F3.6": view("h-lubricant", 0.95),
     "F4.1": view(_LUBRICANT, 0.6, periods=21),
