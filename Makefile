@@ -7,6 +7,9 @@ CORES ?=
 # Settings of the caller that would mix other packages or kernels into the environment.
 unexport PYTHONPATH PYTHONHOME PYTHONUSERBASE PIP_USER PIP_PREFIX PIP_TARGET PIP_ROOT JUPYTER_PATH
 
+# A user whom the system does not know may have no home folder; Snakemake asks for one.
+export HOME ?= $(CURDIR)/.venv
+
 BIN := .venv/bin
 STAMP := .venv/.installed
 BENCH_STAMP := .venv/.installed-bench
@@ -16,7 +19,8 @@ PIP := $(BIN)/python -I -m pip install --quiet --disable-pip-version-check
 # Nothing without a hash is ever installed, so the few packages that come as sources are built
 # with the setuptools of the lock instead of one that pip would fetch for the purpose.
 # The lock is complete, so pip need not resolve: it would also stumble over extras in hash mode.
-LOCKED := $(PIP) --require-hashes --no-deps --no-build-isolation
+# Python compiles what is imported when it is: a fraction of what pip would compile.
+LOCKED := $(PIP) --require-hashes --no-deps --no-build-isolation --no-compile
 SNAKEMAKE := $(BIN)/python -I -m snakemake $(if $(CORES),--cores $(CORES))
 UV_COMPILE := uv pip compile --quiet --universal --python-version 3.11 --fork-strategy fewest \
 	--generate-hashes --no-annotate --no-header --no-emit-index-url

@@ -49,24 +49,10 @@ wildcard_constraints:
     root=re.escape(os.getcwd()),
 
 
-# Short rules run where Snakemake runs, also on a cluster.
+# Short rules run where Snakemake runs, also on a cluster; each file of rules names its own.
 localrules:
     all,
     data,
-    datasets,
-    figures,
-    fig1,
-    study_figures,
-    identified_figures,
-    printed,
-    ledger,
-    verdict,
-    notebook_pages,
-    report,
-    identify,
-    box,
-    crate,
-    hashes,
 
 
 rule all:

@@ -106,6 +106,30 @@ def test_simulate_writes_a_case_with_its_time_course(gearmesh, tmp_path):
     assert os.listdir(tmp_path) == ["case.nc"]
 
 
+def test_simulate_at_a_speed_reports_the_loads(gearmesh, tmp_path):
+    stated = ("--nu", "9000 rpm", "--set", "torque=120 N m", "--set", "revolutions=2")
+    run = gearmesh("simulate", "--variant", "b-both", *stated, "-o", tmp_path / "case.nc")
+    assert "b-both at nu_s = 1.928" in run.stdout
+    with xr.open_dataset(tmp_path / "case.nc") as case:
+        factor = float(case["dynamic_factor"])
+        assert f"K_v = {factor:.4g}" in run.stdout
+        radius = 0.003 * 21 / 2 * np.cos(np.radians(20))
+        assert float(case["force_max"]) == pytest.approx(factor * 120 / radius)
+        assert case["force_normal"].size == case["y"].size
+
+
+def test_geometry_prints_what_a_study_takes(gearmesh):
+    drawing = ("--module", "3 mm", "--teeth", "21", "--face-width", "20 mm")
+    run = gearmesh("geometry", *drawing)
+    assert max(map(len, run.stdout.splitlines())) <= 100
+    stated = dict(line.split(": ") for line in run.stdout.split("for a study:\n")[1].splitlines())
+    assert stated["contact_ratio"].startswith("1.5691")
+    settings = [part for name, value in stated.items() for part in ("--set", f"{name}={value}")]
+    shown = gearmesh("parameters", *settings).stdout
+    rows = {line.split()[0]: line.split() for line in shown.splitlines()}
+    assert rows["mesh_stiffness_max"][2] == f"{float(stated['mesh_stiffness_max'].split()[0]):.8g}"
+
+
 def test_simulate_gives_the_same_bytes_again_and_says_what_it_replaces(gearmesh, tmp_path):
     file = tmp_path / "case.nc"
     assert gearmesh(*SIMULATE, "-o", file).returncode == 0

@@ -34,7 +34,7 @@ class Tab:
         page.on("request", self._see)
 
     def _hear(self, message) -> None:
-        if message.type in ("error", "warning"):
+        if message.type == "error":
             self.problems.append(message.text)
 
     def _see(self, request) -> None:

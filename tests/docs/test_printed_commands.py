@@ -28,6 +28,7 @@ SHOWN = ("text", "yaml")
 """Kinds that are only read: files, output, and code that belongs into a file."""
 
 PAPER = "results/paper"
+SMOKE = "config/smoke.yaml"
 
 ELSEWHERE = {
     "make reproduce": "tests/workflow/test_workflow.py runs the same targets on a small study",
@@ -110,7 +111,10 @@ def executed(page: str) -> list[str]:
 def test_what_a_page_prints_works_as_printed(
     page: str, tmp_path: Path, request: pytest.FixtureRequest
 ) -> None:
-    project = Project.create(tmp_path / "project", "config/paper.yaml")
+    if any(SMOKE in code for code in executed(page)):  # there already, and found up to date
+        project = request.getfixturevalue("smoke").copy(tmp_path / "project")
+    else:
+        project = Project.create(tmp_path / "project", "config/paper.yaml")
     project.path(".venv").symlink_to(sys.prefix)
     if any(PAPER in code for code in executed(page)):
         smoke = request.getfixturevalue("smoke")  # the paper's study, only smaller

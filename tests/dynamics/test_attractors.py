@@ -5,9 +5,14 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from problems import problem
+from problems import of_paper, problem
 
-from gearmesh.dynamics.attraction.attractors import CHAOTIC, NEUTRAL, stable_orbits_near
+from gearmesh.dynamics.attraction.attractors import (
+    CHAOTIC,
+    NEUTRAL,
+    PERIODIC,
+    stable_orbits_near,
+)
 from gearmesh.dynamics.attraction.basins import basins, initial_states, reached, wilson_interval
 from gearmesh.dynamics.attraction.envelopes import envelope_of
 from gearmesh.dynamics.attraction.growth import growth_rates
@@ -90,6 +95,27 @@ def test_no_motion_leaves_a_trapping_region(two_orbits):
         assert region.holds(states).all()
         ends = advance(laws_of([case]), states, 4000)
         np.testing.assert_allclose(ends, np.tile(region.points[0], (200, 1)), atol=1e-6)
+
+
+def test_runs_that_are_not_followed_to_their_end_end_where_they_were_said_to():
+    """Three kinds of ends side by side, and more runs than pilots."""
+    case = of_paper("c-lubricant", 0.78)
+    heights, rates = np.linspace(-2.0, 4.0, 20), np.linspace(-3.0, 3.0, 20)
+    found = basins(case, heights, rates)
+    assert [one.kind for one in found.attractors] == [PERIODIC, PERIODIC, NEUTRAL]
+    assert [one.orbit.periods for one in found.attractors[:2]] == [1, 4]
+    ends = advance(laws_of([case]), initial_states(case, heights, rates), 3000)
+    away = []
+    for attractor in found.attractors[:2]:
+        point, nearest = attractor.orbit.state, np.full(len(ends), np.inf)
+        for _ in range(attractor.orbit.periods):
+            nearest = np.minimum(nearest, np.abs(ends - point).max(axis=1))
+            point = passage(case, point).end
+        away.append(nearest)
+    last = np.where(np.min(away, axis=0) < 1e-6, np.argmin(away, axis=0), 2)
+    # Ever shallower contact losses: their depth falls as one over the time.
+    assert (envelope_of(case).margins(ends[last == 2]) > -0.01).all()
+    np.testing.assert_array_equal(last, found.labels.ravel())
 
 
 def test_a_displaced_start_decays_as_the_multiplier_says():

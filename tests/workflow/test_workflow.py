@@ -145,6 +145,10 @@ def test_neither_the_times_of_sources_nor_snakemake_s_records_matter(smoke, tmp_
     assert project.plan("all") == set()
     project.path(".snakemake").rename(tmp_path / "records")
     assert project.plan("all") == set()
+    for path in project.study.rglob("*"):
+        os.utime(path, (4e9, 4e9))  # in the year 2096
+    project.edit("workflow/report/fig4.rst", "", "More. ")
+    assert project.plan("all") == REPORTED
 
 
 # What an edit reruns: (what is edited, how, which jobs run).
@@ -157,10 +161,11 @@ EVERYTHING = {*CASES, "thresholds", "printed", *AFTER_CASES, *MECHANISMS}
 STATED = {"identified_figures", *EVERYTHING}
 AFTER_THRESHOLDS = {"thresholds", "printed", *FIGURES, *END}
 REPORTED = {"report", "crate", "hashes", "verdict"}
+INPUTS = {"crate", "hashes", "verdict"}
 
 INCREMENTS = {
     "README": ("README.md", "#", "# more\n#", set()),
-    "comment": ("config/paper.yaml", "contact_ratio", "# more\ncontact_ratio", set()),
+    "comment": ("config/paper.yaml", "contact_ratio", "# more\ncontact_ratio", INPUTS),
     "plot": ("src/gearmesh/reproduction/figures/fig2.py", "Fig. 2", "Figure 2",
              {"fig2", *END}),
     "notebook": ("notebooks/fig3.ipynb", "## What is seen", "## Seen", {"fig3", *END}),
@@ -182,9 +187,11 @@ INCREMENTS = {
     "solver": ("src/gearmesh/solvers/simulation.py", '"""', '""" ', EVERYTHING),
     "one stage": ("src/gearmesh/pipeline/stages/claims.py", '"""Check the numbers', '"""Check all',
                   {"printed", "ledger", *REPORTED}),
+    "command": ("workflow/rules/claims.smk", "python -m gearmesh.pipeline ledger",
+                "python -B -m gearmesh.pipeline ledger", {"ledger", *REPORTED}),
     "tolerance": ("config/paper.yaml", "tolerance: 1e-10", "tolerance: 1e-9", EVERYTHING),
     "parameter": ("config/paper.yaml", "value: 8 y_st", "value: 8.1 y_st", STATED),
-    "units": ("config/paper.yaml", "value: 10 um", "value: 0.010 mm", set()),
+    "units": ("config/paper.yaml", "value: 10 um", "value: 0.010 mm", INPUTS),
     "step": ("config/smoke.yaml", "nu: {step: 0.05}", "nu: {step: 0.1}", {*CASES, *AFTER_CASES}),
 }  # fmt: skip
 

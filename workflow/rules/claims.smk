@@ -1,4 +1,10 @@
 # Collect all checks, and compare them with the ledger.
+localrules:
+    printed,
+    ledger,
+    verdict,
+
+
 rule printed:
     input:
         again=PLAN.again("printed"),

@@ -1,4 +1,8 @@
 # Where the results come from: inputs, parameters, jobs, and the hashes of all files.
+localrules:
+    crate,
+
+
 rule crate:
     input:
         read=[

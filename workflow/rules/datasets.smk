@@ -1,4 +1,8 @@
 # Put all cases together.
+localrules:
+    datasets,
+
+
 rule datasets:
     input:
         batches=expand(PLACES.batch("{letter}"), letter=LETTERS),

@@ -1,4 +1,8 @@
 # The explorer: a page beside the report with the numbers of the study, and a solver.
+localrules:
+    explorer,
+
+
 rule explorer:
     input:
         read=[
@@ -8,7 +12,7 @@ rule explorer:
         ],
         again=PLAN.again("explorer"),
     output:
-        PLACES.explorer,
+        report(PLACES.explorer, caption="../report/explorer.rst", category="Report"),
     log:
         PLACES.log("explorer"),
     benchmark:

@@ -1,4 +1,9 @@
 # Execute the notebooks: each draws a figure and checks its claims.
+localrules:
+    fig1,
+    figures,
+
+
 rule thresholds:
     input:
         again=PLAN.again("thresholds"),

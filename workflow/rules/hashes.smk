@@ -1,4 +1,8 @@
 # One file with the hashes of all results, for `sha256sum -c`.
+localrules:
+    hashes,
+
+
 rule hashes:
     input:
         read=[rules.crate.input.read, PLACES.crate],

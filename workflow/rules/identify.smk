@@ -2,6 +2,11 @@
 # computed in batches; a focused design fills a box around the best samples of the designs before
 # it. Nothing here is part of the default target, which reads the committed table
 # config/identified.yaml.
+localrules:
+    box,
+    identify,
+
+
 DESIGNS = PLAN.designs.designs
 FOCUSED = [name for name, design in DESIGNS.items() if design.around]
 

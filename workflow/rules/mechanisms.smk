@@ -1,4 +1,8 @@
 # What lies behind the response curves: the branches of orbits, with one job for each letter.
+localrules:
+    branches,
+
+
 rule orbits:
     input:
         again=lambda wildcards: PLAN.again("orbits", wildcards.letter),

@@ -1,4 +1,10 @@
 # The report: its page, the notebooks as pages beside it, and two figures of its own.
+localrules:
+    identified_figures,
+    notebook_pages,
+    report,
+
+
 rule identified_figures:
     input:
         again=PLAN.again("identified_figures"),

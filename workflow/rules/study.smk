@@ -1,4 +1,10 @@
 # A study of one's own, without a ledger of claims: its figures and its report.
+localrules:
+    study_figures,
+    figures,
+    report,
+
+
 rule study_figures:
     input:
         read=[PLACES.resonance, PLACES.bifurcation],

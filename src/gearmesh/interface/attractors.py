@@ -40,7 +40,8 @@ def attractors(
     Parameters
     ----------
     pair : Pair
-        The gear pair, without eccentricity, profile deviation and Fourier stiffness.
+        The gear pair: two equal wheels, without eccentricity, profile deviation, Fourier stiffness
+        and other terms that only the general solver knows.
     variant : str or Variant
         Which damping terms act where.
     nu : float or str

@@ -10,8 +10,8 @@ from gearmesh.study import units
 UM_PER_MM = 1000.0
 
 _ANGLE = "inv α_w = inv α + 2 (x_3 + x_2) tan(α)/(Z_3 + Z_2), or from a"
-_SINGLE = "one pair of teeth, ISO 6336-1 (2006), 9.3.1, Method B"
-_MEAN = "mean of a mesh period, ISO 6336-1 (2006), 9.3.2: c' (0.75 ε + 0.25)"
+_SINGLE = "one pair of teeth, ISO 6336-1 (2006), clause 9, Method B"
+_MEAN = "mean of a mesh period, ISO 6336-1 (2006), clause 9: c' (0.75 ε + 0.25)"
 
 
 @dataclass(frozen=True)
@@ -110,7 +110,7 @@ def geometry(
     """Compute contact ratio and mesh stiffness of steel wheels from their drawing.
 
     The contact ratio is that of standard involute geometry with profile shift. The stiffness
-    follows ISO 6336-1 (2006), clause 9.3, Method B, for solid steel wheels and line loads of 100
+    follows ISO 6336-1 (2006), clause 9, Method B, for solid steel wheels and line loads of 100
     N/mm and more: one pair of teeth has c' b, and the mean over the mesh period is c_γα b.
 
     Parameters

@@ -13,7 +13,7 @@ def reduced_problem(pair: Pair, variant: str | Variant, nu: float | str) -> Prob
     problem = pair.problem(read_variant(variant), read_frequency(nu, pair))
     if not is_reducible(problem):
         raise InputError(
-            "pair: found run-out, profile deviation or Fourier stiffness; allowed here are pairs "
-            "without them"
+            "pair: found unequal wheels, run-out, profile deviation, Fourier stiffness or another "
+            "general term; allowed here are pairs without them"
         )
     return problem

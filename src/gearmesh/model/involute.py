@@ -11,10 +11,10 @@ SINGLE_FLEXIBILITY = (
     *(0.04723, 0.15551, 0.25791, -0.00635, -0.11654),
     *(-0.00193, -0.24188, 0.00529, 0.00182),
 )
-"""C_1 to C_9 of ISO 6336-1 (2006), 9.3.1.1: the flexibility q' of one pair of teeth."""
+"""C_1 to C_9 of ISO 6336-1 (2006), clause 9, Method B: the flexibility q' of one pair of teeth."""
 
 CORRECTION = 0.8
-"""C_M of ISO 6336-1 (2006), 9.3.1.2: measured stiffness of solid disc gears over theoretical."""
+"""C_M of ISO 6336-1 (2006), clause 9: measured stiffness of solid disc gears over theoretical."""
 
 
 def involute(angle: float) -> float:
@@ -132,5 +132,5 @@ class Involute:
 
     @cached_property
     def mesh_stiffness(self) -> float:
-        """c_gamma_alpha of ISO 6336-1 (2006), 9.3.2: mean stiffness, c' (0.75 epsilon + 0.25)."""
+        """c_gamma_alpha of ISO 6336-1 (2006), clause 9: the mean, c' (0.75 epsilon + 0.25)."""
         return self.single_stiffness * (0.75 * self.contact_ratio + 0.25)

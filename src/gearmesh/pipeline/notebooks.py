@@ -17,6 +17,7 @@ import nbformat
 import papermill
 from nbclient.exceptions import DeadKernelError
 from papermill.exceptions import PapermillExecutionError
+from traitlets.config import Config
 
 from gearmesh.data.writing import replacing
 from gearmesh.errors import InputError
@@ -56,12 +57,15 @@ def run_notebook(
     given = {name: str(value) for name, value in parameters.items() if name in declared}
     try:
         scratch.mkdir(parents=True, exist_ok=True)
-        with tempfile.TemporaryDirectory(dir=scratch, ignore_cleanup_errors=True) as private:
+        with (
+            tempfile.TemporaryDirectory(dir=scratch, ignore_cleanup_errors=True) as private,
+            tempfile.TemporaryDirectory(prefix="gearmesh-", ignore_cleanup_errors=True) as sockets,
+        ):
             folder = Path(private).resolve()
             _prepare_kernel(folder)
             copy = folder / "executed.ipynb"
             try:
-                _execute(notebook, copy, given)
+                _execute(notebook, copy, given, _local(sockets))
             except PapermillExecutionError as error:
                 say(f"see the executed notebook, {executed}")
                 reason = f"cell {error.cell_index}: {error.ename}: {error.evalue}"
@@ -75,7 +79,18 @@ def run_notebook(
         raise InputError(f"{scratch}: cannot be written: {error.strerror}") from None
 
 
-def _execute(notebook: Path, executed: Path, parameters: Mapping[str, str]) -> None:
+def _local(folder: str) -> Config:
+    """Return settings for sockets in a folder: they need neither a network nor free ports.
+
+    The system limits the length of their names to about 100 characters, so the folder is one of the
+    system's temporary folders, whose names are short.
+    """
+    return Config(KernelManager={"transport": "ipc", "ip": f"{folder}/socket"})
+
+
+def _execute(
+    notebook: Path, executed: Path, parameters: Mapping[str, str], sockets: Config
+) -> None:
     """Execute a notebook in a kernel that answers."""
     for attempt in range(1, ATTEMPTS + 1):
         try:
@@ -86,6 +101,7 @@ def _execute(notebook: Path, executed: Path, parameters: Mapping[str, str]) -> N
                 kernel_name=KERNEL,
                 start_timeout=START_TIMEOUT,
                 progress_bar=False,
+                config=sockets,
             )
         except RuntimeError as error:
             silent = "respond" in str(error)

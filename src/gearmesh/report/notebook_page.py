@@ -6,6 +6,7 @@ import nbformat
 from nbconvert import HTMLExporter
 from pygments.formatters import HtmlFormatter
 
+from gearmesh.data.paths import WHY
 from gearmesh.report.presentation import environment
 
 
@@ -30,9 +31,20 @@ def notebook_page(path: Path) -> str:
     )
     return template.render(
         name=path.stem,
-        title=f"Fig. {path.stem.removeprefix('fig')}",
-        # Code that is wider than the page is scrolled by keyboard, too.
-        body=body.replace('<div class="highlight', '<div tabindex="0" class="highlight'),
+        title=_title(path.stem),
+        body=_scrollable(body),
         highlighting=light,
         dark_highlighting=dark,
     )
+
+
+def _title(name: str) -> str:
+    """Return the title of what a notebook draws."""
+    return "Why it jumps" if name == WHY else f"Fig. {name.removeprefix('fig')}"
+
+
+def _scrollable(body: str) -> str:
+    """Let code and tables that are wider than the page be scrolled, by keyboard too."""
+    box = '<div class="scroll" tabindex="0" role="region" aria-label="Table">'
+    body = body.replace("<table", f"{box}<table").replace("</table>", "</table></div>")
+    return body.replace('<div class="highlight', '<div tabindex="0" class="highlight')

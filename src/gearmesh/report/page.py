@@ -115,6 +115,7 @@ def _why(study: Study, places: Places) -> str:
             " ".join((paths.CAPTIONS / f"{name}.rst").read_text(encoding="utf-8").split()),
             embedded(places.figure_files(name)[1]),
             f"notebooks/{paths.WHY}.html",
+            views.FIGURES[name],
         )
         for name, title in why.TITLES.items()
     }

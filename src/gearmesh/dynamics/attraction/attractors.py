@@ -28,10 +28,12 @@ closed curve; chaos; a motion that still changes after the transient; a run that
 WEIGHTS = np.array([1.0, 1.0, 0.01, 0.01])
 """Weights of y, y', b, b' in distances: the bodies hardly act on the mesh."""
 
+SAME = 1e-6
+"""Distance, in y_st, of two numbers that are the same."""
+
 _MOST_PERIODS = 12
 _NEAR = 0.1  # distance after n periods, in y_st, of a state that may be close to an orbit
 _AS_CLOSE = 2.0
-_SAME = 1e-6  # of the extrema of one orbit, in y_st
 
 
 @dataclass(frozen=True)
@@ -110,7 +112,7 @@ class Attractor:
         if self.orbit is None or other.orbit is None:
             return self.kind == other.kind
         away = max(abs(self.y_max - other.y_max), abs(self.y_min - other.y_min))
-        return self.orbit.periods == other.orbit.periods and away < _SAME
+        return self.orbit.periods == other.orbit.periods and away < SAME
 
     @property
     def rank(self) -> tuple[bool, float, float, str]:
@@ -141,7 +143,7 @@ def stable_orbits_near(problem: Problem, states: np.ndarray, most: int) -> Itera
         if not closest[i] < _NEAR:
             break
         # The least period of those that return about as close.
-        periods = int(np.argmax(away[:, i] < _AS_CLOSE * closest[i])) + 1
+        periods = int(np.argmax(away[:, i] < _AS_CLOSE * closest[i] + SAME)) + 1
         try:
             orbit = correct(problem, states[i], periods)
         except NoOrbit:

@@ -17,6 +17,10 @@ from gearmesh.dynamics.starts import linear_rates
 from gearmesh.model.problem import Problem
 from gearmesh.solvers.reduced.period_map import segments_of
 
+RISE = 0.8
+"""Contact losses vanish in the end if their margin rises to this share, or higher, while the time
+from the start doubles or grows by half."""
+
 _PLACES = 256  # in a mesh period
 _STRIDE = 16  # of the places that are tried first
 _GROWTH = 1e-9  # above 1, of a multiplier that grows

@@ -1,33 +1,25 @@
 """The attractors of one gear pair at one frequency, as far as they are known."""
 
 import math
-from dataclasses import replace
 
 import numpy as np
 
 from gearmesh.dynamics.attraction.attractors import (
-    CHAOTIC,
     LOST,
-    MOVING,
     NEUTRAL,
-    QUASI_PERIODIC,
     Attractor,
     stable_orbits_near,
 )
-from gearmesh.dynamics.attraction.envelopes import envelope_of
-from gearmesh.dynamics.attraction.growth import LEAST_GROWTH, growth_rates
+from gearmesh.dynamics.attraction.envelopes import RISE, envelope_of
+from gearmesh.dynamics.attraction.irregular import irregular_kinds
 from gearmesh.dynamics.attraction.regions import Region, region_of
 from gearmesh.dynamics.orbits import Orbit
-from gearmesh.model.problem import Problem, State
+from gearmesh.model.problem import Problem
 from gearmesh.solvers.reduced.ensembles import laws_of
-from gearmesh.solvers.simulation import simulate
 
 _TRIED = 64  # states near which orbits are searched for
 _LOOKS = 2  # searches among them
-_RISE = 0.8  # of the margin of contact losses that vanish, in the second half of a run
 _MOST_SHALLOW = 0.2  # in y_st
-_SPAN = 400  # mesh periods over which extrema are compared
-_LEAST_CHANGE = 1e-3  # of the extrema, in y_st
 
 
 class Search:
@@ -122,39 +114,20 @@ class Search:
             Margins half a transient earlier.
         """
         labels = np.full(len(states), -1)
-        if self.envelope:
-            rising = self.envelope.margins(states) > _RISE * before
+        if self.envelope and any(self.problem.lubricant):
+            rising = self.envelope.margins(states) > RISE * before
             if rising.any():
                 labels[rising] = self.neutral()
-        growth = growth_rates(self.laws, states)
-        chaotic = (labels < 0) & (growth > LEAST_GROWTH)
-        if chaotic.any():
-            mean = float(np.mean(growth[chaotic]))
-            labels[chaotic] = self.label(Attractor(CHAOTIC, exponent=mean))
         open_ = np.flatnonzero(labels < 0)
-        if open_.size and not any(self.problem.material + self.problem.lubricant):
-            labels[open_] = self.neutral()
-        elif open_.size:
-            changes = self._changes(states[open_])
-            for kind, are in (
-                (MOVING, changes >= _LEAST_CHANGE),
-                (QUASI_PERIODIC, changes < _LEAST_CHANGE),
-            ):
-                if are.any():
-                    labels[open_[are]] = self.label(Attractor(kind))
+        if open_.size:
+            problems = [self.problem] * open_.size
+            kinds, rates = irregular_kinds(problems, self.laws, states[open_])
+            for kind in set(kinds):
+                are = np.array([one == kind for one in kinds])
+                rate = float(np.mean(rates[are]))
+                labels[open_[are]] = (
+                    self.neutral()
+                    if kind == NEUTRAL
+                    else self.label(Attractor(kind, exponent=rate))
+                )
         return labels
-
-    def _changes(self, states: np.ndarray) -> np.ndarray:
-        """Return how much the extrema of motions change from one span to the next."""
-        revolutions = math.ceil(_SPAN / self.problem.teeth)
-        plain = replace(self.problem, revolutions=revolutions, kept_revolutions=revolutions)
-        runs = [replace(plain, initial_state=State(*state)) for state in states.tolist()]
-        first = simulate(runs, estimate_errors=False)
-        again = [replace(plain, initial_state=response.final_state) for response in first]
-        second = simulate(again, estimate_errors=False)
-        return np.array(
-            [
-                max(abs(one.y_max - two.y_max), abs(one.y_min - two.y_min))
-                for one, two in zip(first, second, strict=True)
-            ]
-        )

@@ -68,21 +68,20 @@ class Shown:
 
 def shown(pair: Pair) -> list[Shown]:
     """Return the controls for the parameters of a pair."""
-    rows = {row.name: row for row in pair.parameters}
+    declared = Pair.declarations()
     found = []
     for control in CONTROLS:
-        row, factor = rows[control.name], 1.0
-        unit = "" if row.unit == "1" else row.unit.replace("*", " ")
+        stated, factor = declared[control.name], 1.0
+        unit = "" if stated["unit"] == "1" else stated["unit"].replace("*", " ")
         if control.scale:
-            factor, unit = float(rows[control.scale].value), _SYMBOLS[control.scale]
+            factor, unit = float(getattr(pair, control.scale)), _SYMBOLS[control.scale]
+        value = getattr(pair, control.name)
         # Only the initial displacement may be open: static equilibrium, which is y_st.
-        value = factor if row.value is None else row.value
-        extra = Pair.model_fields[control.name].json_schema_extra
-        assert isinstance(extra, dict)
-        least, greatest = (float(extra[end]) / factor for end in ("low", "high"))  # type: ignore[arg-type]
+        value = factor if value is None else value
+        least, greatest = (float(stated[end]) / factor for end in ("low", "high"))
         found.append(
             Shown(
-                *(control, row.symbol, row.description, unit),
+                *(control, stated["symbol"], stated["description"], unit),
                 *(factor, float(f"{value / factor:.12g}"), least, greatest),
             )
         )

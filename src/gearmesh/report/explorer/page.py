@@ -22,7 +22,7 @@ SCRIPTS = tuple(
     for name in (
         *("solver/model", "solver/series", "solver/events", "solver/run"),
         *("page/numbers", "page/view", "page/pens", "page/axes", "page/diagram"),
-        *("page/orbit", "page/sweep", "page/readout", "page/export", "page/main"),
+        *("page/orbit", "page/sweep", "page/readout", "page/export", "page/pointer", "page/main"),
     )
 )
 """The scripts in the order in which they are joined; each may use those before it."""

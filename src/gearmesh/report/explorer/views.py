@@ -70,6 +70,12 @@ FIGURES = {
     "fig5": view(_MATERIAL, 0.61),
     "fig6": view(_MATERIAL, 0.61, damping=19.7685),
     "fig7": view(_MATERIAL, 0.61, periods=2),
+    "branches": view(_LUBRICANT, 0.75),
+    "basins": view(_LUBRICANT, 0.75, initial_displacement=-1),
+    "sweeps": view(_LUBRICANT, 0.79),
+    "special_curves": view(_MATERIAL, 0.6386),
+    "lyapunov": view("a-conservative", 0.7),
+    "design_map": view("b-material", 0.81),
 }
 """The view of each figure."""
 
@@ -87,7 +93,7 @@ CLAIMS = {
     "F3.2": view(_MATERIAL, 0.63),
     "F3.3": view("h-lubricant", 0.79),
     "F3.4": view(_LUBRICANT, 0.72),
-    "F3.4b": view(_LUBRICANT, 0.61, periods=21),
+    "F3.4b": view(_LUBRICANT, 0.62),
     "F3.5": view(_LUBRICANT, 0.66),
     "F3.6": view("h-lubricant", 0.95),
     "F4.1": view(_LUBRICANT, 0.6, periods=21),

@@ -68,16 +68,14 @@ def kinds_of_period(problem: Problem) -> tuple[list[float], np.ndarray]:
     ndarray of int, shape (periods + 1,)
         The place of each period's kind. Periods differ where the factors of single teeth do.
     """
-    parts = segments(problem)
+    middles = [problem.initial_phase + 0.5 * (part.start + part.end) for part in segments(problem)]
+    if not problem.terms.tooth_factors:
+        return middles, np.zeros(problem.periods + 1, np.int64)
     kinds: dict[tuple[tuple[int, ...], ...], int] = {}
-    phases, variants = [], []
+    phases: list[float] = []
+    variants = []
     for period in range(problem.periods + 1):
-        places = [
-            problem.start_period + period + problem.initial_phase + 0.5 * (part.start + part.end)
-            for part in parts
-        ]
-        if not problem.terms.tooth_factors:
-            return places, np.zeros(problem.periods + 1, np.int64)
+        places = [problem.start_period + period + middle for middle in middles]
         teeth = tuple(_marked_teeth(problem, place) for place in places)
         if teeth not in kinds:
             kinds[teeth] = len(kinds)

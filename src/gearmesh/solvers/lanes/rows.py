@@ -51,6 +51,37 @@ def store(typingctx, work, row, value):
     return types.void(POINTER, row, value), codegen
 
 
+def _element_pointer(context, builder, sig, args):
+    data, *numbers = args[:4]
+    width, row, lane = (
+        context.cast(builder, number, kind, types.intp)
+        for number, kind in zip(numbers, sig.args[1:4], strict=True)
+    )
+    return builder.gep(data, [builder.add(builder.mul(row, width), lane)])
+
+
+@intrinsic
+def get(typingctx, work, width, row, lane):
+    """Return one lane of a row; as compiled functions `get` and `put` would take a second more."""
+
+    def codegen(context, builder, sig, args):
+        return builder.load(_element_pointer(context, builder, sig, args))
+
+    return types.float64(POINTER, width, row, lane), codegen
+
+
+@intrinsic
+def put(typingctx, work, width, row, lane, value):
+    """Write one lane of a row."""
+
+    def codegen(context, builder, sig, args):
+        value = context.cast(builder, args[4], sig.args[4], types.float64)
+        builder.store(value, _element_pointer(context, builder, sig, args))
+        return context.get_dummy_value()
+
+    return types.void(POINTER, width, row, lane, value), codegen
+
+
 @intrinsic
 def store_at(typingctx, array, index, value):
     """Write the lanes of `value` to consecutive elements of a flat array, from `index` on."""

@@ -32,7 +32,7 @@ def laws_of(problems: Sequence[Problem], tolerance: float = TOLERANCE) -> np.nda
     return np.array([run_row(problem, tolerance, 0) for problem in problems]).view(RUN)[:, 0]
 
 
-def advance(laws: np.ndarray, states: np.ndarray, periods: int) -> np.ndarray:
+def advance(laws: np.ndarray, states: np.ndarray, periods: int | np.ndarray) -> np.ndarray:
     """Return the states that runs reach after whole mesh periods.
 
     Parameters
@@ -41,8 +41,8 @@ def advance(laws: np.ndarray, states: np.ndarray, periods: int) -> np.ndarray:
         Of each run, or of all.
     states : ndarray, shape (n, 4)
         y, y', b, b' at the initial phase.
-    periods : int
-        Mesh periods, >= 1.
+    periods : int or ndarray of int, shape (n,)
+        Mesh periods of all runs, or of each, >= 1.
 
     Returns
     -------
@@ -50,14 +50,40 @@ def advance(laws: np.ndarray, states: np.ndarray, periods: int) -> np.ndarray:
         Not-a-number if a run fails.
     """
     if len(states) <= _CHUNK:
-        return _advance(laws, states, periods)
+        return trace(laws, states, periods)[0]
     chunks = [slice(first, first + _CHUNK) for first in range(0, len(states), _CHUNK)]
+    several, lengths = len(laws) > 1, np.broadcast_to(periods, len(states))
+
+    def of(chunk: slice) -> np.ndarray:
+        return trace(laws[chunk] if several else laws, states[chunk], lengths[chunk])[0]
+
     with ThreadPoolExecutor(os.cpu_count()) as threads:
-        ends = threads.map(
-            lambda chunk: _advance(laws if len(laws) == 1 else laws[chunk], states[chunk], periods),
-            chunks,
-        )
-        return np.concatenate(list(ends))
+        return np.concatenate(list(threads.map(of, chunks)))
+
+
+def trace(
+    laws: np.ndarray, states: np.ndarray, periods: int | np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
+    """Return what `advance` returns, and the stroboscopic points on the way.
+
+    Returns
+    -------
+    ends : ndarray, shape (n, 4)
+    strobes : ndarray, shape (n, periods + 1, 2)
+        y and y' at the boundaries of the mesh periods.
+    """
+    runs = np.repeat(laws, len(states)) if len(laws) == 1 else laws.copy()
+    runs["most_steps"] *= np.maximum(periods, 1) / runs["periods"]
+    runs["periods"] = runs["first_kept"] = periods
+    runs["start"] = states
+    runs["regime"] = regime_of(states[:, 0], runs["backlash"])
+    runs["direction"] = 0.0
+    summaries = np.zeros(len(runs), SUMMARY)
+    strobes = np.empty((len(runs), int(np.max(periods, initial=0)) + 1, 2))
+    sweep_all(WIDEST, runs, summaries, strobes, _NO_EXTREMA, _NO_SAMPLES, 0)
+    ends = summaries["final"]
+    ends[summaries["status"] != OK] = np.nan
+    return ends, strobes
 
 
 def advance_to_phase(problem: Problem, phases: np.ndarray, states: np.ndarray) -> np.ndarray:
@@ -87,20 +113,3 @@ def _cut(laws: np.ndarray, share: float) -> np.ndarray:
     segments = int((lengths > 0.0).sum())
     laws["length"], laws["segments"] = np.maximum(lengths, 0.0), segments
     return laws
-
-
-def _advance(laws: np.ndarray, states: np.ndarray, periods: int) -> np.ndarray:
-    if len(states) == 1:  # in two lanes: only `simulate` needs the sweep that fills one
-        return _advance(laws, np.repeat(states, 2, axis=0), periods)[:1]
-    runs = np.repeat(laws, len(states)) if len(laws) == 1 else laws.copy()
-    runs["most_steps"] *= periods / runs["periods"]
-    runs["periods"] = runs["first_kept"] = periods
-    runs["start"] = states
-    runs["regime"] = regime_of(states[:, 0], runs["backlash"])
-    runs["direction"] = 0.0
-    summaries = np.zeros(len(runs), SUMMARY)
-    strobes = np.empty((len(runs), periods + 1, 2))
-    sweep_all(runs, summaries, strobes, _NO_EXTREMA, _NO_SAMPLES, 0)
-    ends = summaries["final"]
-    ends[summaries["status"] != OK] = np.nan
-    return ends

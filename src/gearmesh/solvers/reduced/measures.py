@@ -12,9 +12,9 @@ from gearmesh.solvers.lanes.operations import (
     width_of,
     zeros8,
 )
-from gearmesh.solvers.lanes.rows import load, store, store_at
+from gearmesh.solvers.lanes.rows import get, load, store, store_at
 from gearmesh.solvers.reduced.events import SEGMENT_ENDED
-from gearmesh.solvers.reduced.records import get, take_value
+from gearmesh.solvers.reduced.records import take_value
 from gearmesh.solvers.reduced.taylor import direction, evaluate
 from gearmesh.solvers.reduced.workspace import (
     EVENT,

@@ -4,6 +4,7 @@ import numpy as np
 
 from gearmesh.model.contact import NORMAL_MESH
 from gearmesh.solvers.compilation import inner
+from gearmesh.solvers.lanes.rows import get, put
 from gearmesh.solvers.reduced.workspace import (
     BACKLASH,
     BEARING_DAMPING,
@@ -76,18 +77,6 @@ SUMMARY = np.dtype(
     [*MEASURED, ("final", np.float64, 4), ("regime", np.float64), ("direction", np.float64)]
 )
 """What the kernel measures on a run, and `start`, `regime` and `direction` at its end."""
-
-
-@inner
-def put(work, width, row, lane, value):
-    """Write one lane of a row."""
-    work[row * width + lane] = value
-
-
-@inner
-def get(work, width, row, lane):
-    """Return one lane of a row."""
-    return work[row * width + lane]
 
 
 @inner

@@ -90,7 +90,8 @@ def integrate(
     extrema = np.empty((n, extrema_per_period * kept), EXTREMUM)
     sampled = n if samples_per_period else 0
     samples = np.empty((sampled, SAMPLED, kept * samples_per_period + WIDEST))
-    sweep_all(runs, summaries, strobes, extrema, samples, samples_per_period)
+    width = 1 if len(runs) == 1 else WIDEST
+    sweep_all(width, runs, summaries, strobes, extrema, samples, samples_per_period)
     measured = [
         dict(zip(SUMMARY.names or (), values, strict=True)) for values in summaries.tolist()
     ]
@@ -194,14 +195,14 @@ def _sample_ends(parts: tuple[Segment, ...], per_period: int) -> list[int]:
     return [math.ceil(part.end * per_period - _ON_EDGE) for part in parts]
 
 
-def sweep_all(runs: np.ndarray, *arguments: object) -> None:
-    """Call the compiled sweep until all runs are over."""
+def sweep_all(width: int, *arguments: object) -> None:
+    """Call the compiled sweep of one lane or of `WIDEST` lanes until all runs are over."""
     progress = np.full(PROGRESS, -1, np.int64)
-    compiled, width = (_scalar_sweep, 1) if len(runs) == 1 else (_vector_sweep, WIDEST)
+    compiled = _scalar_sweep if width == 1 else _vector_sweep
     progress[WIDEST:] = 0
     progress[ENDED] = (1 << width) - 1
     work = _workspace()
-    while not compiled(work, runs, *arguments, progress, _MOST_TURNS):
+    while not compiled(work, *arguments, progress, _MOST_TURNS):
         pass
 
 

@@ -127,6 +127,15 @@ def _settle(like, work, indices, summaries, strobes):
 
 
 @inner
+def _all_empty(indices):
+    """Return whether no lane has a run; numba would compile `indices.max()` for a second."""
+    empty = True
+    for index in indices:
+        empty = empty and index < 0
+    return empty
+
+
+@inner
 def sweep(
     like, work, runs, summaries, strobes, extrema, samples, samples_per_period, progress, most_turns
 ):
@@ -174,7 +183,7 @@ def sweep(
                 idle(work, width, lane)
             if not ended:
                 enter(like, work)
-                if indices.max() < 0:
+                if _all_empty(indices):
                     return True
         turn(like, work, runs, indices, summaries, extrema)
         expand(like, work, _highest_power(like, work))

@@ -48,7 +48,9 @@ class Diagram {
       }
       this.branches.forEach((branch) => this.branch(pen, theme, branch));
       for (const { kind, nu, max, min } of this.special) {
-        for (const y of [max, min]) pen.marker(SPECIAL[kind][1], frame.toX(nu), frame.toY(y), 3.2, theme.ink, theme.normal);
+        for (const y of [max, min]) {
+          pen.marker(SPECIAL[kind][1], frame.toX(nu), frame.toY(y), 3.2, theme.ink, theme.normal);
+        }
       }
     });
     frame.axes(pen, theme, { xLabel: "mesh frequency νₛ", yLabel: "extrema of y in yₛₜ" });
@@ -85,7 +87,9 @@ class Diagram {
         const distance = dx * dx + dy * dy;
         if (distance < least) {
           least = distance;
-          best = { x: x + dx, y: pixel + dy, words: `${variantLabel(set.variant)}  νₛ = ${number(set.nu[i], 6)}\n${set.maximum[i] ? "maximum" : "minimum"} y = ${number(set.y[i], 6)} yₛₜ` };
+          const kind = set.maximum[i] ? "maximum" : "minimum";
+          const where = `${variantLabel(set.variant)}  νₛ = ${number(set.nu[i], 6)}`;
+          best = { x: x + dx, y: pixel + dy, words: `${where}\n${kind} y = ${number(set.y[i], 6)} yₛₜ` };
         }
       }
     }
@@ -94,7 +98,9 @@ class Diagram {
         const dx = frame.toX(nu) - x, dy = frame.toY(y) - pixel;
         if (dx * dx + dy * dy >= least) continue;
         least = dx * dx + dy * dy;
-        best = { x: x + dx, y: pixel + dy, words: `${SPECIAL[kind][0]} of ${variantLabel(view.variant)}: νₛ = ${number(nu, 7)}, period ${periods} T\n${y === max ? "greatest" : "least"} y = ${number(y, 6)} yₛₜ` };
+        const what = `${SPECIAL[kind][0]} of ${variantLabel(view.variant)}: νₛ = ${number(nu, 7)}, period ${periods} T`;
+        const height = `${y === max ? "greatest" : "least"} y = ${number(y, 6)} yₛₜ`;
+        best = { x: x + dx, y: pixel + dy, words: `${what}\n${height}` };
       }
     }
     return best;

@@ -41,3 +41,47 @@ function diagramTable(sweep) {
   dots.nu.forEach((nu, i) => lines.push(`${nu},${dots.y[i]},${dots.maximum[i] ? "maximum" : "minimum"}`));
   return `${statement()}${lines.join("\n")}\n`;
 }
+
+function pictureSvg() {
+  const pen = new SvgPen(), width = 1200, top = 30;
+  const title = `${variantLabel(view.variant)}, νₛ = ${view.nu}   ${changesInWords()}`;
+  pen.text(title, 54, 20, theme.ink, { size: 14, bold: true });
+  const shifted = (x, y, draw) => {
+    pen.parts.push(`<g transform="translate(${x} ${y})">`);
+    draw(pen);
+    pen.parts.push("</g>");
+  };
+  shifted(0, top, (at) => {
+    diagram.arrange(700, 420, result, sweep);
+    diagram.still(at, theme);
+    diagram.live(at, theme, result);
+  });
+  shifted(700, top, (at) => {
+    plane.arrange(500, 420, result, course);
+    plane.draw(at, theme, null);
+  });
+  shifted(0, top + 420, (at) => {
+    timeCourse.arrange(width, 480, result, course);
+    timeCourse.draw(at, theme, null);
+  });
+  request();
+  return pen.document(width, top + 900, theme.page);
+}
+
+function changesInWords() {
+  return Object.entries(view.changed).map(([name, value]) => `${name} = ${value}`).join(", ");
+}
+
+function savePng() {
+  const blob = new Blob([pictureSvg()], { type: "image/svg+xml" });
+  const image = new Image(), url = URL.createObjectURL(blob);
+  image.onload = () => {
+    const canvas = document.createElement("canvas");
+    canvas.width = 2 * image.width;
+    canvas.height = 2 * image.height;
+    canvas.getContext("2d").drawImage(image, 0, 0, canvas.width, canvas.height);
+    canvas.toBlob((blob) => save(fileName(".png"), "image/png", blob));
+    URL.revokeObjectURL(url);
+  };
+  image.src = url;
+}

@@ -4,19 +4,20 @@ const SAMPLES = 256;
 const byId = (id) => document.getElementById(id);
 const canvases = { diagram: byId("diagram"), plane: byId("plane"), course: byId("course") };
 const diagram = new Diagram(canvases.diagram), plane = new Plane(), timeCourse = new TimeCourse();
-const sweep = new Sweep(() => request({ still: true }));
+const sweep = new Sweep(() => request());
 let theme = readTheme(), result = null, course = null, cursor = null, tip = null;
 let pending = null, hashTimer = 0;
 
-// Ask for a drawing in the next frame: `run` computes again, `still` draws the whole diagram again.
-function request(what = {}) {
-  if (pending) return void Object.assign(pending, what);
-  pending = { ...what };
+// Ask for a drawing in the next frame, and for the run to be computed again.
+function request(run = false) {
+  const waits = pending !== null;
+  pending = run || pending === true;
+  if (waits) return;
   requestAnimationFrame(() => {
     const wanted = pending;
     pending = null;
-    if (wanted.run) compute();
-    draw(wanted.run || wanted.still);
+    if (wanted) compute();
+    draw();
   });
 }
 
@@ -45,8 +46,8 @@ function penFor(canvas, layer = canvas) {
   return { pen: new CanvasPen(context), width, height };
 }
 
-function draw(whole) {
-  drawDiagram(whole);
+function draw() {
+  drawDiagram();
   for (const [panel, canvas] of [[plane, canvases.plane], [timeCourse, canvases.course]]) {
     const { pen, width, height } = penFor(canvas);
     panel.arrange(width, height, result, course);
@@ -63,12 +64,15 @@ function progressWords() {
 }
 
 // The dots of the diagram are a layer of their own, drawn again only if it has to change.
-function drawDiagram(whole) {
+function drawDiagram() {
   const canvas = canvases.diagram, { pen, width, height } = penFor(canvas);
   diagram.arrange(width, height, result, sweep);
   const { frame } = diagram;
-  const key = JSON.stringify([width, height, view.variant, view.beside, frame.xRange, frame.yRange, diagram.backlash, theme.page, sweep.key, sweep.dots.y.length]);
-  if (whole && key !== diagram.key || key !== diagram.key) {
+  const key = JSON.stringify([
+    width, height, view.variant, view.beside, frame.xRange, frame.yRange, diagram.backlash,
+    theme.page, sweep.key, sweep.dots.y.length,
+  ]);
+  if (key !== diagram.key) {
     diagram.still(penFor(canvas, diagram.layer).pen, theme);
     diagram.key = key;
   }
@@ -122,7 +126,7 @@ function showStop() {
 function changed() {
   showStop();
   showControls();
-  request({ run: true });
+  request(true);
 }
 
 function listen() {
@@ -134,7 +138,11 @@ function listen() {
   on("nu-field", "change", (event) => { setNu(parseFloat(event.target.value)); changed(); });
   for (const field of document.querySelectorAll("[data-parameter]")) {
     const { parameter } = field.dataset;
-    field.addEventListener("change", () => { change(parameter, parseFloat(field.value)); field.blur(); changed(); });
+    field.addEventListener("change", () => {
+      change(parameter, parseFloat(field.value));
+      field.blur();
+      changed();
+    });
     on(`slide-${parameter}`, "input", ({ target }) => {
       const value = "logarithmic" in target.dataset ? 10 ** +target.value : +target.value;
       change(parameter, +value.toPrecision(5));
@@ -149,75 +157,11 @@ function listen() {
   window.addEventListener("hashchange", () => {
     if (location.hash !== hashOf()) { readHash(location.hash); changed(); }
   });
-  new ResizeObserver(() => request({ still: true })).observe(canvases.diagram);
-  matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => { theme = readTheme(); request({ still: true }); });
-}
-
-// Pointer and keyboard on the pictures -----------------------------------------------------------
-
-function placeOf(event) {
-  const box = event.currentTarget.getBoundingClientRect();
-  return [event.clientX - box.left, event.clientY - box.top];
-}
-
-function listenToPictures() {
-  const dragged = canvases.diagram;
-  const follow = (event) => { setNu(+diagram.frame.fromX(placeOf(event)[0]).toFixed(4)); tip = null; changed(); };
-  dragged.addEventListener("pointerdown", (event) => { dragged.setPointerCapture(event.pointerId); follow(event); });
-  dragged.addEventListener("pointermove", (event) => {
-    if (event.buttons) return void follow(event);
-    tip = diagram.nearest(...placeOf(event));
+  new ResizeObserver(() => request()).observe(canvases.diagram);
+  matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => {
+    theme = readTheme();
     request();
   });
-  const point = (find) => (event) => { tip = null; cursor = find(...placeOf(event)); request(); };
-  canvases.plane.addEventListener("pointermove", point((x, y) => plane.nearest(x, y)));
-  canvases.course.addEventListener("pointermove", point((x) => timeCourse.sampleAt(x)));
-  canvases.course.addEventListener("pointerdown", point((x) => timeCourse.sampleAt(x)));
-  for (const canvas of Object.values(canvases)) {
-    canvas.addEventListener("pointerleave", () => { tip = null; request(); });
-    canvas.addEventListener("keydown", (event) => {
-      const direction = { ArrowLeft: -1, ArrowRight: 1 }[event.key];
-      if (!direction) return;
-      event.preventDefault();
-      if (canvas === canvases.diagram) { setNu(view.nu + direction * (event.shiftKey ? 0.01 : 0.001)); changed(); return; }
-      cursor = clamp((cursor ?? 0) + direction * (event.shiftKey ? 32 : 4), 0, course.count - 1);
-      request();
-    });
-  }
-}
-
-// Pictures as files ------------------------------------------------------------------------------
-
-function pictureSvg() {
-  const pen = new SvgPen(), width = 1200, top = 30;
-  pen.text(`${variantLabel(view.variant)}, νₛ = ${view.nu}   ${changesInWords()}`, 54, 20, theme.ink, { size: 14, bold: true });
-  const shifted = (x, y, height, draw) => {
-    pen.parts.push(`<g transform="translate(${x} ${y})">`);
-    draw(height);
-    pen.parts.push("</g>");
-  };
-  shifted(0, top, 420, (height) => { diagram.arrange(700, height, result, sweep); diagram.still(pen, theme); diagram.live(pen, theme, result); });
-  shifted(700, top, 420, (height) => { plane.arrange(500, height, result, course); plane.draw(pen, theme, null); });
-  shifted(0, top + 420, 480, (height) => { timeCourse.arrange(width, height, result, course); timeCourse.draw(pen, theme, null); });
-  request({ still: true });
-  return pen.document(width, top + 900, theme.page);
-}
-
-function changesInWords() {
-  return Object.entries(view.changed).map(([name, value]) => `${name} = ${value}`).join(", ");
-}
-
-function savePng() {
-  const image = new Image(), url = URL.createObjectURL(new Blob([pictureSvg()], { type: "image/svg+xml" }));
-  image.onload = () => {
-    const canvas = document.createElement("canvas");
-    canvas.width = 2 * image.width;
-    canvas.height = 2 * image.height;
-    canvas.getContext("2d").drawImage(image, 0, 0, canvas.width, canvas.height);
-    canvas.toBlob((blob) => save(fileName(".png"), "image/png", blob));
-    URL.revokeObjectURL(url);
-  };
-  image.src = url;
 }
 
 const firstStop = document.querySelector("[data-stop]");
@@ -226,4 +170,7 @@ listen();
 listenToPictures();
 changed();
 // For tests, and for those who want to compute more: the model, and what is shown.
-window.gearmesh = { diagram, problemOf, simulate, view, studyDots, studyCase, studyBranches, studySpecialPoints, pairOf, result: () => result, course: () => course, sweep };
+window.gearmesh = {
+  diagram, problemOf, simulate, view, studyDots, studyCase, studyBranches, studySpecialPoints, pairOf,
+  sweep, result: () => result, course: () => course,
+};

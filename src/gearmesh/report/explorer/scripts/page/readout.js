@@ -55,6 +55,7 @@ function comparison(result, known) {
   if (!known) return "no case with these parameters";
   if (known.status !== "ok") return known.status.replace("_", " ");
   const apart = Math.max(Math.abs(result.yMax - known.yMax), Math.abs(result.yMin - known.yMin));
-  const words = apart < 2e-6 * Math.max(1, Math.abs(known.yMax)) ? "agrees with the dataset" : `${number(apart, 2)} yₛₜ from the dataset`;
+  const agrees = apart < 2e-6 * Math.max(1, Math.abs(known.yMax)); // the dataset has 32 bits here
+  const words = agrees ? "agrees with the dataset" : `${number(apart, 2)} yₛₜ from the dataset`;
   return known.sensitive ? `${words}; this motion amplifies errors` : words;
 }

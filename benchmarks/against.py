@@ -1,0 +1,157 @@
+"""Time and space against an earlier commit, both measured in one go on this machine.
+
+Run from the root of the project: ``python -m benchmarks.against FOLDER [ROW…]``. `FOLDER` keeps a
+clone of each commit with an environment of its own, made where it is missing; what is not committed
+does not count. Without rows all are measured, which takes half an hour on two cores.
+
+Processor time is compared, not time on the clock: other work on the machine disturbs it least.
+"""
+
+import os
+import resource
+import shutil
+import subprocess
+import sys
+from collections.abc import Callable
+from pathlib import Path
+
+from benchmarks.pipeline_layout import ROOT
+
+BASE = "13961cb"
+CORES = "2"
+TRIES = 5
+
+
+def main() -> None:
+    """Measure the rows and print them."""
+    folder = Path(sys.argv[1]).resolve()
+    rows = sys.argv[2:] or list(ROWS)
+    print(table(folder, rows))
+
+
+def table(folder: Path, rows: list[str]) -> str:
+    """Return the table of some rows, with the reason for each that falls short."""
+    base, here = _clone(folder / "base", BASE), _clone(folder / "here", "HEAD")
+    lines = [f"{'':32}{BASE:>10}{'here':>10}{'ratio':>8}{'asked':>8}"]
+    for name in rows:
+        measure, unit, asked, reason = ROWS[name]
+        before, now = measure(base), measure(here)
+        ratio = now / before
+        lines.append(
+            f"{f'{name}, {unit}':32}{before:10.2f}{now:10.2f}{ratio:8.2f}{asked:8.2f}"
+            + (f"  {reason}" if ratio > asked else "")
+        )
+        print(lines[-1], file=sys.stderr, flush=True)
+    return "\n".join(lines)
+
+
+def _clone(place: Path, commit: str) -> Path:
+    if not place.exists():
+        subprocess.run(["git", "clone", "--quiet", ROOT, place], check=True)
+        subprocess.run(["git", "checkout", "--quiet", commit], cwd=place, check=True)
+    return place
+
+
+def _spent(folder: Path, *command: str | Path, **more: str) -> float:
+    """Run a command in a clone; return the seconds of processor time."""
+    environment = os.environ | {"PYTHONPATH": str(folder / "src")} | more
+    before = resource.getrusage(resource.RUSAGE_CHILDREN)
+    subprocess.run(command, cwd=folder, env=environment, check=True, capture_output=True)
+    after = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return after.ru_utime - before.ru_utime + after.ru_stime - before.ru_stime
+
+
+def _python(folder: Path) -> Path:
+    if not (folder / ".venv" / ".installed").exists():
+        _spent(folder, "make", ".venv/.installed")
+    return folder / ".venv" / "bin" / "python"
+
+
+def _snakemake(folder: Path, *arguments: str) -> float:
+    return _spent(folder, _python(folder), "-m", "snakemake", "--cores", CORES, *arguments)
+
+
+def _environment(folder: Path) -> float:
+    shutil.rmtree(folder / ".venv", ignore_errors=True)
+    return _spent(folder, "make", ".venv/.installed")
+
+
+def _forget(folder: Path) -> None:
+    """Remove the results, and what Snakemake knows of them."""
+    for found in (folder / "results").glob("[!R]*"):
+        shutil.rmtree(found) if found.is_dir() else found.unlink()
+    shutil.rmtree(folder / ".snakemake", ignore_errors=True)
+
+
+def _cold(folder: Path) -> float:
+    _forget(folder)
+    for compiled in (folder / "src").rglob("__pycache__"):
+        shutil.rmtree(compiled)
+    return _snakemake(folder)
+
+
+def _warm(folder: Path) -> float:
+    _forget(folder)
+    return _snakemake(folder)
+
+
+def _nothing(folder: Path) -> float:
+    return min(_snakemake(folder) for _ in range(TRIES))
+
+
+def _disk(folder: Path) -> float:
+    """Return the megabytes of the results, as blocks of the file system."""
+    files = (file for file in (folder / "results").rglob("*") if file.is_file())
+    return sum(file.stat().st_blocks for file in files) * 512 / 1e6
+
+
+def _atlas(folder: Path) -> float:
+    _forget(folder)
+    return _snakemake(folder, "--config", "study=config/atlas.yaml", "--", "data")
+
+
+def _simulate(folder: Path, **more: str) -> float:
+    command = ["-m", "gearmesh", "simulate", "--config", "config/paper.yaml"]
+    command += ["--variant", "c-lubricant", "--nu", "0.66", "-o", "results/one.nc"]
+    return _spent(folder, _python(folder), *command, **more)
+
+
+def _start(folder: Path) -> float:
+    return min(_simulate(folder) for _ in range(TRIES))
+
+
+def _first(folder: Path) -> float:
+    kept = folder / "results" / "compiled"
+    shutil.rmtree(kept, ignore_errors=True)
+    return _simulate(folder, NUMBA_CACHE_DIR=str(kept))
+
+
+def _tests(folder: Path) -> float:
+    return _spent(folder, _python(folder), "-m", "pytest", "-q", "-n", CORES, "--dist", "loadfile")
+
+
+ROWS: dict[str, tuple[Callable[[Path], float], str, float, str]] = {
+    "environment": (_environment, "s", 0.6, "pip unpacks 1.4 GB of wheels one by one"),
+    "study cold": (_cold, "s", 0.55, "as the next row"),
+    "study warm": (
+        *(_warm, "s", 0.5),
+        "orbits, branches and the explorer are new, and each process loads numpy, xarray and "
+        "matplotlib",
+    ),
+    "nothing to do": (_nothing, "s", 0.8, "most of it is the start of Snakemake"),
+    "disk": (_disk, "MB", 0.5, "a case file of 10 KB takes 12 KB of disk; the rest are pictures"),
+    "gearmesh simulate": (
+        *(_start, "s", 0.5),
+        "loading numba and its tables of types takes two thirds of it",
+    ),
+    "first compilation": (
+        *(_first, "s", 0.6),
+        "numba infers and lowers the types of 30 functions, mostly in Python",
+    ),
+    "atlas": (_atlas, "s", 0.5, "half of it is integration, which was as fast before"),
+    "tests": (_tests, "s", 0.7, "three times as many tests"),
+}
+"""What is measured: how, its unit, the ratio that is asked, and why it may fall short."""
+
+if __name__ == "__main__":
+    main()
