@@ -266,8 +266,8 @@ def rest(problem: Problem) -> np.ndarray:
 class Course:
     """A run: strobes (n_periods + 1, 2) of y and y', extrema (n, 3) of time, y, kind; end state.
 
-    `regimes` and `slips` list (time, new value) of each change; times count from the start. `partings`
-    counts how often the flanks part while they overlap, or touch again.
+    `regimes` and `slips` list (time, new value) of each change; times count from the start.
+    `partings` counts how often the flanks part while they overlap, or touch again.
     """
 
     strobes: np.ndarray

@@ -53,13 +53,16 @@ def test_determinant_counts_the_time_in_which_linear_damping_acts(name):
 def test_jacobian_is_the_limit_of_differences(name):
     case = problem(0.9, name, backlash=1.0)
     start = np.array(REST)
-    jacobian = passage(case, start, 2).jacobian
+    moved = passage(case, start, 2)
+    jacobian = np.column_stack([moved.jacobian, moved.stretched])
     errors = []
     for step in (1e-3, 1e-4, 1e-5):
         ends = [
             [passage(case, start + side * step * np.eye(4)[i], 2).end for side in (1.0, -1.0)]
             for i in range(4)
         ]
+        longer, shorter = (replace(case, nu=0.9 * np.exp(side * step)) for side in (-1.0, 1.0))
+        ends.append([passage(stretched, start, 2).end for stretched in (longer, shorter)])
         differences = np.array([(up - down) / (2.0 * step) for up, down in ends]).T
         errors.append(np.abs(differences - jacobian).max())
     rounding = 1e-9

@@ -39,8 +39,8 @@ def test_a_replaced_value_may_be_left_open(paper):
 
 
 MISTAKES = """
-contact_ratio=2.5 | contact_ratio: found 2.5; out of range; allowed is 1 to 2
-contact_ratio=0.9 | found 0.9; out of range; allowed is 1 to 2
+contact_ratio=2.5 | contact_ratio: found 2.5; allowed are 1 to 2, and up to 3 with
+contact_ratio=0.9 | found 0.9; out of range; allowed is 1 to 3
 contact_ratio=1,569 | found '1,569'; not a quantity; use a decimal point; expected: a plain number
 contact_ratio=.nan | found nan; not finite
 contact_ratio=.inf | found inf; not finite
@@ -59,7 +59,7 @@ teeth=21.5 | found 21.5; allowed is a whole number
 teeth=twenty-one | not a quantity
 teeth=true | found True; not a quantity
 teeth=yes | found 'yes'; not a quantity
-teeth=[21, 21] | teeth: found a list of 2; allowed is a whole number
+teeth=[21, 21, 21] | teeth: found a list of 3; allowed is one value, or two for wheels 3 and 2
 damping=3.95 | unit missing; expected: a damping coefficient
 damping=3.95 N/mm | of another kind
 damping_2m=-1 N s/mm | damping_2m: found '-1 N s/mm'; out of range; allowed is 0 to 1e+06

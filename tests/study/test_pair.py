@@ -193,8 +193,8 @@ def test_a_wrong_reference_is_reported_once_and_not_at_what_is_relative_to_it(pa
         pair.replace(static_deflection="10 kg")
     assert str(caught.value).startswith("static_deflection: found '10 kg'")
     assert "more)" not in str(caught.value)
-    with pytest.raises(InputError, match=r"^contact_ratio: found 2.5; out of range"):
-        pair.replace(bearing_stiffness="1 C_s", contact_ratio=2.5)
+    with pytest.raises(InputError, match=r"^contact_ratio: found 3.5; out of range"):
+        pair.replace(bearing_stiffness="1 C_s", contact_ratio=3.5)
 
 
 def test_a_copy_without_validation_forgets_how_its_values_were_stated(pair):

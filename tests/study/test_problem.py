@@ -1,12 +1,15 @@
 """The dimensionless problem that a pair states for one variant and frequency."""
 
 import dataclasses
+import re
 
+import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
 from gearmesh.errors import InputError
+from gearmesh.model.mesh import mesh_stiffness
 from gearmesh.model.variants import VARIANTS, variant
 from gearmesh.solvers.simulation import simulate
 
@@ -141,3 +144,73 @@ def test_the_unit_of_length_cancels(pair, factor):
     for field in dataclasses.fields(problems[0]):
         first, second = (getattr(problem, field.name) for problem in problems)
         assert second == pytest.approx(first), field.name
+
+
+def test_two_wheels_and_every_term_reach_the_problem(pair):
+    c_s = pair.stiffness_mean
+    radii = pair.base_radii
+    stated = pair.replace(
+        teeth=[20, 40],
+        body_mass=["2 kg", "5 kg"],
+        bearing_stiffness_z=["1 C_s", "2 C_s"],
+        torsional_damping=["1 N*m*s/rad", "2 N*m*s/rad"],
+        torque_harmonics=[
+            {"wheel": 3, "order": 1, "cos": 0.1},
+            {"wheel": 2, "shaft": 2, "sin": 0.2},
+        ],
+        tooth_factors=[{"wheel": 2, "tooth": 3, "factor": 0.5}],
+        backlash_harmonics=[{"wheel": 3, "shaft": 1, "cos": "2 um"}],
+        restoring_3=0.1,
+        non_adhesive=True,
+        damping_follows_stiffness="sqrt",
+        stiffness_fourier=[[0.1, 0.2]],
+    )
+    problem = stated.problem(variant("c-both"), 0.7)
+    wheel_3, wheel_2 = problem.wheels
+    assert (wheel_3.teeth, wheel_2.teeth) == (20, 40)
+    assert wheel_2.base_radius == pytest.approx(2.0 * wheel_3.base_radius)
+    assert (wheel_3.inertia, wheel_2.inertia) == (2.0, 2.0)
+    assert wheel_2.body_mass == pytest.approx(5.0 / pair.reduced_mass)
+    assert wheel_2.bearing_stiffness[1] == pytest.approx(2.0)
+    assert wheel_3.bearing_stiffness[0] == pytest.approx(pair.bearing_stiffness / c_s)
+    terms = problem.terms
+    assert terms.torque_harmonics_3 == ((1.0, 0.1, 0.0),)
+    assert terms.torque_harmonics_2 == ((2.0 / 40, 0.0, 0.2),)
+    assert terms.tooth_factors == ((2, 3, 0.5),)
+    assert terms.backlash_harmonics[0].cosine == pytest.approx(2e-3 / pair.static_deflection)
+    assert terms.backlash_harmonics[0].order == 1.0 / 20
+    assert (terms.restoring_3, terms.non_adhesive, terms.damping_power) == (0.1, True, 0.5)
+    # Force of a damper of the rotation on the base circle, in N s/mm, over C_s / Omega_s.
+    damper = 1000.0 / stated.base_radii[0] ** 2
+    assert terms.torsional_damping[0] == pytest.approx(damper * pair.natural_frequency / c_s)
+    assert problem.periods == 5 * 20
+    assert radii[0] == radii[1]
+
+
+def test_tables_set_the_static_stiffness(pair):
+    table = pair.replace(stiffness_table=["3e5 N/mm", "4e5 N/mm", "3.5e5 N/mm", "2e5 N/mm"])
+    assert table.stiffness_mean == pytest.approx(3.125e5)
+    tooth_pair = pair.replace(tooth_pair_stiffness=["1e5 N/mm", "3e5 N/mm", "1e5 N/mm"])
+    assert tooth_pair.stiffness_mean == pytest.approx(pair.contact_ratio * 2e5)
+    problem = tooth_pair.problem(variant("c-both"), 0.7)
+    phases = np.linspace(0.0, 1.0, 4001)
+    mean = np.mean([mesh_stiffness(problem, phase) for phase in phases[:-1]])
+    assert mean == pytest.approx(1.0, abs=1e-3)
+
+
+@pytest.mark.parametrize(
+    ("changes", "message"),
+    [
+        ({"torque_harmonics": [{"cos": 0.1}]}, "order: found none of order and shaft"),
+        ({"stiffness_table": ["1 N/mm"]}, "two values or more"),
+        (
+            {"stiffness_fourier": [[0.1, 0.0]], "stiffness_harmonics": 3},
+            "stiffness_fourier: stated beside stiffness_harmonics",
+        ),
+        ({"tooth_factors": [{"tooth": 1}]}, "factor: missing"),
+        ({"damping_follows_stiffness": "cubic"}, "allowed is 'none', 'sqrt' or 'linear'"),
+    ],
+)
+def test_a_wrong_term_is_reported_in_one_line(pair, changes, message):
+    with pytest.raises(InputError, match=re.escape(message)):
+        pair.replace(**changes)

@@ -13,6 +13,7 @@ from project import Project
 
 FIGURES = [f"fig{number}" for number in range(2, 8)]
 LETTERS = "abcdefgh"
+WHY = ("branches", "basins", "sweeps", "special_curves", "lyapunov", "design_map")
 
 
 @pytest.fixture
@@ -39,6 +40,25 @@ def test_everything_that_the_contract_lists_is_there(smoke):
     assert {path.name for path in smoke.path("results").iterdir()} == {"smoke"}
     measured = {path.stem for path in (smoke.study / "benchmarks").iterdir()}
     assert {*(f"cases-{letter}" for letter in LETTERS), "datasets", "figure-fig2"} <= measured
+
+
+def test_what_lies_behind_the_curves_is_there_and_explains_claims(smoke):
+    page = (smoke.study / "report/index.html").read_text(encoding="utf-8")
+    assert '<section id="why">' in page
+    for name in WHY:
+        assert f'<figure id="{name}">' in page
+        assert {f"figures/{name}.png", f"figures/{name}.svg"} <= smoke.results().keys()
+    assert (smoke.study / "report/notebooks/why.html").exists()
+    special = json.loads((smoke.study / "datasets/special_points.json").read_text())
+    assert {"variant", "kind", "nu", "periods"} <= special[0].keys()
+    own = {row["kind"]: row["nu"] for row in special if row["variant"] == "c-material"
+           and "parameters" not in row}  # fmt: skip
+    assert abs(own["switching"] - 0.6386300024579) < 1e-8
+    entries = json.loads((smoke.study / "claims.json").read_text(encoding="utf-8"))
+    mechanisms = {entry["id"]: entry["mechanism"] for entry in entries if "mechanism" in entry}
+    assert "0.638630" in mechanisms["F3.2"]
+    branches = xr.open_dataset(smoke.study / "datasets/branches.nc")
+    assert set(branches["variant"].values) == {"c-material", "c-lubricant"}
 
 
 def test_a_run_leaves_nothing_temporary(smoke):
@@ -125,6 +145,10 @@ def test_neither_the_times_of_sources_nor_snakemake_s_records_matter(smoke, tmp_
     assert project.plan("all") == set()
     project.path(".snakemake").rename(tmp_path / "records")
     assert project.plan("all") == set()
+    for path in project.study.rglob("*"):
+        os.utime(path, (4e9, 4e9))  # in the year 2096
+    project.edit("workflow/report/fig4.rst", "", "More. ")
+    assert project.plan("all") == REPORTED
 
 
 # What an edit reruns: (what is edited, how, which jobs run).
@@ -137,10 +161,11 @@ EVERYTHING = {*CASES, "thresholds", "printed", *AFTER_CASES, *MECHANISMS}
 STATED = {"identified_figures", *EVERYTHING}
 AFTER_THRESHOLDS = {"thresholds", "printed", *FIGURES, *END}
 REPORTED = {"report", "crate", "hashes", "verdict"}
+INPUTS = {"crate", "hashes", "verdict"}
 
 INCREMENTS = {
     "README": ("README.md", "#", "# more\n#", set()),
-    "comment": ("config/paper.yaml", "contact_ratio", "# more\ncontact_ratio", set()),
+    "comment": ("config/paper.yaml", "contact_ratio", "# more\ncontact_ratio", INPUTS),
     "plot": ("src/gearmesh/reproduction/figures/fig2.py", "Fig. 2", "Figure 2",
              {"fig2", *END}),
     "notebook": ("notebooks/fig3.ipynb", "## What is seen", "## Seen", {"fig3", *END}),
@@ -162,9 +187,11 @@ INCREMENTS = {
     "solver": ("src/gearmesh/solvers/simulation.py", '"""', '""" ', EVERYTHING),
     "one stage": ("src/gearmesh/pipeline/stages/claims.py", '"""Check the numbers', '"""Check all',
                   {"printed", "ledger", *REPORTED}),
+    "command": ("workflow/rules/claims.smk", "python -m gearmesh.pipeline ledger",
+                "python -B -m gearmesh.pipeline ledger", {"ledger", *REPORTED}),
     "tolerance": ("config/paper.yaml", "tolerance: 1e-10", "tolerance: 1e-9", EVERYTHING),
     "parameter": ("config/paper.yaml", "value: 8 y_st", "value: 8.1 y_st", STATED),
-    "units": ("config/paper.yaml", "value: 10 um", "value: 0.010 mm", set()),
+    "units": ("config/paper.yaml", "value: 10 um", "value: 0.010 mm", INPUTS),
     "step": ("config/smoke.yaml", "nu: {step: 0.05}", "nu: {step: 0.1}", {*CASES, *AFTER_CASES}),
 }  # fmt: skip
 

@@ -187,7 +187,7 @@ def absent(field: Field) -> float:
 
 def boundaries(pair: Pair) -> int:
     """Return the number of boundaries of mesh periods in a run."""
-    return pair.revolutions * pair.teeth + 1
+    return pair.revolutions * pair.teeth_3 + 1
 
 
 def _values(response: Response) -> Iterator[tuple[Field, object]]:

@@ -1,12 +1,13 @@
 """Responses as xarray datasets with units, as the public functions return them."""
 
+import functools
 import json
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict
-from typing import Any
 
 import numpy as np
 import xarray as xr
+from pydantic import TypeAdapter
 
 from gearmesh.data.casefile import (
     ALL_FIELDS,
@@ -19,7 +20,7 @@ from gearmesh.data.casefile import (
     variable_attributes,
 )
 from gearmesh.errors import InputError
-from gearmesh.model.problem import Branches, Problem, State
+from gearmesh.model.problem import Problem, State
 from gearmesh.solvers.response import Response
 from gearmesh.study.cases import Case
 from gearmesh.study.pair import Pair
@@ -57,22 +58,16 @@ def final_state(dataset: xr.Dataset) -> State:
     InputError
         If the dataset holds no run, or one that failed.
     """
-    state = _with_tuples(json.loads(dataset.attrs.get(_FINAL_STATE, "null")))
-    if state is None:
+    found = json.loads(dataset.attrs.get(_FINAL_STATE, "null"))
+    if found is None:
         raise InputError("start: the dataset holds no completed run")
-    branches = state.pop("branches")
-    if branches is not None:
-        branches = Branches(**branches | {"problem": Problem(**branches["problem"])})
-    return State(**state, branches=branches)
+    return _states().validate_python(found)
 
 
-def _with_tuples(value: Any) -> Any:
-    """Replace the lists of JSON by tuples, which compare equal to what was written."""
-    if isinstance(value, list):
-        return tuple(map(_with_tuples, value))
-    if isinstance(value, dict):
-        return {key: _with_tuples(item) for key, item in value.items()}
-    return value
+@functools.cache
+def _states() -> TypeAdapter[State]:
+    """Return what makes a state, with all that it is made of, from the lists of JSON."""
+    return TypeAdapter(State)
 
 
 def _twins(field: Field, columns: Record) -> list[tuple[str, np.ndarray, dict[str, object]]]:

@@ -7,7 +7,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from gearmesh.dynamics.continuation import Curve, Family, Point, at_phase, clear_phase
+from gearmesh.dynamics.continuation import Curve, Family, Point, at_phase, clear_phase, stretches
 from gearmesh.dynamics.orbits import Orbit
 from gearmesh.dynamics.special_points import SpecialPoint, special_points
 from gearmesh.dynamics.walks import LONGEST_STEP, Piece, joined, points_of, walk
@@ -105,7 +105,13 @@ def follow(
         raise NoOrbit(f"{parameter} = {value:.6g} of the orbit is outside {low:.6g} to {high:.6g}")
     phase = orbit.problem.initial_phase
     moved = at_phase(orbit, clear_phase(orbit))
-    curve = Curve(family, orbit.periods, (high - low,), moved.problem.initial_phase)
+    curve = Curve(
+        family,
+        orbit.periods,
+        (high - low,),
+        moved.problem.initial_phase,
+        stretches=stretches(family, value),
+    )
     start = curve.at(moved, (value,))
     back, ahead = walk(curve, start, (limits,), longest_step)
     pieces = joined(back, ahead)

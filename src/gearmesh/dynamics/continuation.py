@@ -73,6 +73,9 @@ class Curve:
         passes an end of a regime at this very phase, because damping jumps there.
     condition : callable, optional
         Only with two parameters: a function that is 0 for the orbits of the curve.
+    stretches : bool
+        Whether the only parameter is nu. It stretches the mesh period, and the integration gives
+        the derivative exactly.
     """
 
     family: Family
@@ -80,6 +83,7 @@ class Curve:
     units: tuple[float, ...]
     phase: float
     condition: Callable[[Orbit], float] | None = None
+    stretches: bool = False
 
     def point(self, place: np.ndarray, normal: np.ndarray, along: np.ndarray) -> Point:
         """Return the point of the curve in the plane through `place` with the given normal.
@@ -97,7 +101,7 @@ class Curve:
         """
         origin, best = place, np.inf
         orbit = self._orbit(place)
-        gradients = self._gradients(place, orbit)
+        gradients = self._gradients(place, orbit, rough=True)
         for _ in range(_MOST_CORRECTIONS):
             defect = self._defect(orbit)
             if not np.abs(defect).max() < best:
@@ -106,7 +110,7 @@ class Curve:
             found, found_orbit = place, orbit
             if best < ROUNDED:
                 break
-            gradients[:4, :4] = orbit.passage.jacobian - np.eye(4)
+            self._differentiate(orbit, gradients)
             try:
                 correction = np.linalg.solve(
                     np.vstack([gradients, normal]), np.append(defect, normal @ (place - origin))
@@ -125,8 +129,7 @@ class Curve:
         return self._with_tangent(place, self._orbit(place), point.tangent)
 
     def _with_tangent(self, place: np.ndarray, orbit: Orbit, along: np.ndarray) -> Point:
-        gradients = self._gradients(place)
-        gradients[:4, :4] = orbit.passage.jacobian - np.eye(4)
+        gradients = self._gradients(place, orbit)
         tangent = np.linalg.svd(gradients)[2][-1]
         if tangent @ along < 0.0:
             tangent = -tangent
@@ -180,7 +183,8 @@ class Curve:
 
     def _orbit(self, place: np.ndarray) -> Orbit:
         problem = self.family(*self._values(place))
-        problem = replace(problem, initial_phase=self.phase, initial_state=None)
+        if problem.initial_phase != self.phase or problem.initial_state is not None:
+            problem = replace(problem, initial_phase=self.phase, initial_state=None)
         moved = passage(problem, place[:4], self.periods)
         if moved.status != "complete":
             raise NoOrbit(f"the motion ends with {moved.status}")
@@ -193,23 +197,35 @@ class Curve:
         defect = orbit.passage.end - orbit.state
         return defect if self.condition is None else np.append(defect, self.condition(orbit))
 
-    def _gradients(self, place: np.ndarray, orbit: Orbit | None = None) -> np.ndarray:
-        """Return the gradients of the defect by differences, except for those of P^n in the state.
+    def _gradients(self, place: np.ndarray, orbit: Orbit, rough: bool = False) -> np.ndarray:
+        """Return the gradients of the defect, by differences where the integration gives none.
 
-        With the orbit at `place` the differences are one-sided: good enough for the direction of
-        Newton's steps, which does not change the point to which they converge.
+        They are one-sided if rough: good enough for the direction of Newton's steps, which does not
+        change the point to which they converge.
         """
-        rows = len(place) - 1
-        gradients = np.zeros((rows, len(place)))
+        gradients = np.zeros((len(place) - 1, len(place)))
+        self._differentiate(orbit, gradients)
+        if self.stretches:
+            return gradients
         for i in range(4 if self.condition is None else 0, len(place)):
             away = _DIFFERENCE * np.eye(len(place))[i]
             ahead = self._defect(self._orbit(place + away))
-            if orbit is None:
-                behind = self._defect(self._orbit(place - away))
-                gradients[:, i] = (ahead - behind) / (2.0 * _DIFFERENCE)
-            else:
-                gradients[:, i] = (ahead - self._defect(orbit)) / _DIFFERENCE
+            behind = self._defect(orbit if rough else self._orbit(place - away))
+            difference = (ahead - behind) / (_DIFFERENCE if rough else 2.0 * _DIFFERENCE)
+            gradients[0 if i >= 4 else 4 :, i] = difference[0 if i >= 4 else 4 :]
         return gradients
+
+    def _differentiate(self, orbit: Orbit, gradients: np.ndarray) -> None:
+        """Write the gradients that the integration gives."""
+        gradients[:4, :4] = orbit.passage.jacobian - np.eye(4)
+        if self.stretches:
+            gradients[:, 4] = orbit.passage.stretched * (-self.units[0] / orbit.problem.nu)
+
+
+def stretches(family: Family, value: float) -> bool:
+    """Return whether the only parameter of a family is nu."""
+    here, there = family(value), family(1.001 * value)
+    return here.nu == value and there == replace(here, nu=1.001 * value)
 
 
 def at_phase(orbit: Orbit, phase: float) -> Orbit:

@@ -127,7 +127,7 @@ class Orbit:
     @cached_property
     def multipliers(self) -> np.ndarray:
         """Floquet multipliers, complex array of shape (4,), the largest modulus first."""
-        return _sorted(np.linalg.eigvals(self.passage.jacobian))
+        return sorted_multipliers(np.linalg.eigvals(self.passage.jacobian))
 
     @property
     def neutral(self) -> bool:
@@ -293,7 +293,7 @@ def newton_correction(moved: Passage, state: np.ndarray) -> np.ndarray:
     return np.linalg.lstsq(matrix, state - moved.end, rcond=1e-14)[0]
 
 
-def _sorted(multipliers: np.ndarray) -> np.ndarray:
+def sorted_multipliers(multipliers: np.ndarray) -> np.ndarray:
     """Return multipliers as complex numbers, the largest modulus first, conjugates together."""
     values = multipliers.astype(complex)
     return values[np.lexsort([-values.imag, -values.real, -np.abs(values)])]

@@ -1,13 +1,15 @@
 """Periodic orbits, with units."""
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
 import xarray as xr
 
-from gearmesh.dynamics import orbits
-from gearmesh.errors import InputError
+from gearmesh.dynamics import general_orbits, orbits
+from gearmesh.dynamics.general_orbits import GeneralOrbit, state_of
+from gearmesh.dynamics.starts import coordinates
+from gearmesh.errors import InputError, NoOrbit
 from gearmesh.interface.lengths import with_lengths
 from gearmesh.interface.statements import (
     Start,
@@ -17,7 +19,9 @@ from gearmesh.interface.statements import (
 )
 from gearmesh.model.contact import CONTACT_LOSS, INVERSE_MESH, NORMAL_MESH
 from gearmesh.model.motion import state_at
+from gearmesh.model.problem import State
 from gearmesh.model.variants import Variant
+from gearmesh.solvers.reduced.runs import is_reducible
 from gearmesh.study.pair import Pair
 
 REGIMES = {
@@ -37,14 +41,28 @@ class Orbit:
     variant : Variant
     nu : float
         Mesh frequency ν_s.
-    found : gearmesh.dynamics.orbits.Orbit
-        The orbit in dimensionless form, with its certificate.
+    found : gearmesh.dynamics.orbits.Orbit or gearmesh.dynamics.general_orbits.GeneralOrbit
+        The orbit in dimensionless form; the latter if only the general solver serves the pair.
     """
 
     pair: Pair
     variant: Variant
     nu: float
-    found: orbits.Orbit = field(repr=False)
+    found: orbits.Orbit | GeneralOrbit = field(repr=False)
+
+    @property
+    def reduced(self) -> orbits.Orbit:
+        """The orbit in dimensionless form; raises NoOrbit if it is not of the reduced system."""
+        if isinstance(self.found, GeneralOrbit):
+            raise NoOrbit("branches: only orbits of the reduced system can be followed")
+        return self.found
+
+    @property
+    def initial_state(self) -> State:
+        """The state at the initial phase, from which a run or another search can start."""
+        if isinstance(self.found, GeneralOrbit):
+            return state_of(self.found.problem, self.found.state)
+        return State(*self.found.state.tolist())
 
     @property
     def periods(self) -> int:
@@ -53,7 +71,7 @@ class Orbit:
 
     @property
     def multipliers(self) -> np.ndarray:
-        """Floquet multipliers, complex, shape (4,), the largest modulus first."""
+        """Floquet multipliers, complex, the largest modulus first: 4 in the reduced system."""
         return self.found.multipliers
 
     @property
@@ -137,16 +155,18 @@ def find_orbit(
     Parameters
     ----------
     pair : Pair
-        The gear pair, without eccentricity, profile deviation and Fourier stiffness.
+        The gear pair, without eccentricity and without damping of the rotations to the frame.
     variant : str or Variant
         Which damping terms act where.
     nu : float or str
         Mesh frequency ν_s, or the speed of wheel 3, as ``"3000 rpm"``.
     periods : int
-        Its least period, in mesh periods.
+        Its least period, in mesh periods. If single teeth differ, a multiple of the mesh periods
+        after which the same teeth meet.
     start : tuple or Orbit, optional
         (y, dy/dτ_s) at the initial phase near the orbit, each with its unit or as a number of
-        static deflections; or an orbit nearby. By default several initial conditions are tried.
+        static deflections; or an orbit nearby. By default several initial conditions are tried;
+        with terms that only the general solver knows, the end of a long run from rest.
 
     Returns
     -------
@@ -170,11 +190,15 @@ def find_orbit(
         raise InputError(f"periods: found {periods!r}; allowed is a whole number from 1 to 1000")
     chosen, frequency = read_variant(variant), read_frequency(nu, pair)
     problem = pair.problem(chosen, frequency)
-    state = None
+    begun = None
     if isinstance(start, Orbit):
-        state = start.found.state
+        begun = start.initial_state
     elif start is not None:
         begun = with_settings(pair, start).problem(chosen, frequency).initial_state
         begun = begun or state_at(problem)
-        state = np.array([begun.y, begun.v, begun.b, begun.b_rate])
-    return Orbit(pair, chosen, frequency, orbits.find_orbit(problem, periods, state))
+    found: orbits.Orbit | GeneralOrbit
+    if is_reducible(problem):
+        found = orbits.find_orbit(problem, periods, None if begun is None else coordinates(begun))
+    else:
+        found = general_orbits.find_orbit(replace(problem, initial_state=begun), periods)
+    return Orbit(pair, chosen, frequency, found)

@@ -62,7 +62,8 @@ def spectrum(run: xr.Dataset, *quantities: str) -> xr.Dataset:
             allowed = f"allowed are {', '.join(there)}" if there else "the run has no time course"
             raise InputError(f"spectrum: found {name!r}; {allowed}")
     (dimension,) = run[quantities[0]].dims
-    size, teeth = run.sizes[dimension], json.loads(run.attrs["parameters"])["teeth"]
+    size = run.sizes[dimension]
+    teeth = np.ravel(json.loads(run.attrs["parameters"])["teeth"])[0]
     step, period = float(run["time"][1] - run["time"][0]), float(run["mesh_period"])
     order = np.arange(size // 2 + 1) / round(size * step / period)
     found = xr.Dataset(coords=_orders(order, order / period, teeth))

@@ -11,14 +11,14 @@ from gearmesh.study.cases import Study
 SNAKEFILE = Path("Snakefile")
 CITATION = Path("CITATION.cff")
 _LOCK = Path("requirements.lock")
-_RULES = Path("workflow/rules")
+RULES = Path("workflow/rules")
 
 
 def inputs(study: Study) -> list[Path]:
     """Return the files, the Snakefile first; all but the study itself stand in the project."""
     ledger = [study.claims, *sorted(paths.NOTEBOOKS.glob("*.ipynb"))] if study.claims else []
     return [
-        *(SNAKEFILE, *sorted(_RULES.glob("*.smk")), *_bases(study.path)),
+        *(SNAKEFILE, *sorted(RULES.glob("*.smk")), *_bases(study.path)),
         *(path for path in ledger if path),
         *(layout.IDENTIFIED, layout.SETTINGS, _LOCK, CITATION),
     ]

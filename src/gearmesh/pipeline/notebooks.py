@@ -17,6 +17,7 @@ import nbformat
 import papermill
 from nbclient.exceptions import DeadKernelError
 from papermill.exceptions import PapermillExecutionError
+from traitlets.config import Config
 
 from gearmesh.data.writing import replacing
 from gearmesh.errors import InputError
@@ -29,6 +30,9 @@ ATTEMPTS = 3
 """Number of attempts to start a kernel; one fails if two kernels have taken the same port."""
 
 KERNEL = "python3"
+
+LONGEST = 90
+"""Length of a folder in which sockets may be; a name of a socket has 104 characters at most."""
 
 
 def run_notebook(
@@ -56,12 +60,15 @@ def run_notebook(
     given = {name: str(value) for name, value in parameters.items() if name in declared}
     try:
         scratch.mkdir(parents=True, exist_ok=True)
-        with tempfile.TemporaryDirectory(dir=scratch, ignore_cleanup_errors=True) as private:
+        with (
+            tempfile.TemporaryDirectory(dir=scratch, ignore_cleanup_errors=True) as private,
+            tempfile.TemporaryDirectory(prefix="gearmesh-", ignore_cleanup_errors=True) as sockets,
+        ):
             folder = Path(private).resolve()
             _prepare_kernel(folder)
             copy = folder / "executed.ipynb"
             try:
-                _execute(notebook, copy, given)
+                _execute(notebook, copy, given, _local(sockets))
             except PapermillExecutionError as error:
                 say(f"see the executed notebook, {executed}")
                 reason = f"cell {error.cell_index}: {error.ename}: {error.evalue}"
@@ -75,7 +82,20 @@ def run_notebook(
         raise InputError(f"{scratch}: cannot be written: {error.strerror}") from None
 
 
-def _execute(notebook: Path, executed: Path, parameters: Mapping[str, str]) -> None:
+def _local(folder: str) -> Config:
+    """Return settings for sockets in a folder: they need neither a network nor free ports.
+
+    The system limits the length of their names, so the folder is one of the system's temporary
+    folders, whose names are short. Where it is not (TMPDIR may be long), kernels use the network.
+    """
+    if len(folder) > LONGEST:
+        return Config()
+    return Config(KernelManager={"transport": "ipc", "ip": f"{folder}/socket"})
+
+
+def _execute(
+    notebook: Path, executed: Path, parameters: Mapping[str, str], sockets: Config
+) -> None:
     """Execute a notebook in a kernel that answers."""
     for attempt in range(1, ATTEMPTS + 1):
         try:
@@ -86,6 +106,7 @@ def _execute(notebook: Path, executed: Path, parameters: Mapping[str, str]) -> N
                 kernel_name=KERNEL,
                 start_timeout=START_TIMEOUT,
                 progress_bar=False,
+                config=sockets,
             )
         except RuntimeError as error:
             silent = "respond" in str(error)

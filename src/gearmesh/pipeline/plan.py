@@ -5,14 +5,16 @@ was changed, or when it was made of something else. The manifests are checked wh
 (`Plan.check`), so neither the times of files nor Snakemake's own records matter.
 """
 
+import getpass
 import hashlib
 import os
+import re
 import shlex
 import sys
 import time
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass, replace
-from functools import cached_property
+from dataclasses import dataclass, field
+from functools import cache, cached_property
 from pathlib import Path
 
 from gearmesh.data import casefile, manifest, paths, provenance
@@ -22,7 +24,7 @@ from gearmesh.identification import layout
 from gearmesh.identification.design import left_alone, stated
 from gearmesh.identification.settings import Settings, load_settings
 from gearmesh.pipeline import locks
-from gearmesh.pipeline.inputs import inputs
+from gearmesh.pipeline.inputs import RULES, inputs
 from gearmesh.pipeline.messages import say
 from gearmesh.pipeline.stages import STAGES, job_name
 from gearmesh.reproduction.claims import Claim, load_ledger
@@ -38,7 +40,7 @@ _FAR_FUTURE = 2**32 - 1
 """A time later than that of any result, in seconds: the year 2106."""
 
 
-@dataclass(frozen=True)
+@dataclass
 class Plan:
     """A study and the plan of its jobs.
 
@@ -52,6 +54,7 @@ class Plan:
 
     study: Study
     holding: frozenset[str] | None = None
+    _digests: dict[str, str] = field(default_factory=dict, repr=False)
 
     @cached_property
     def places(self) -> Places:
@@ -95,12 +98,18 @@ class Plan:
         *arguments : str
             Which of its jobs.
         """
+        job = job_name(stage, *arguments)
+        if job not in self._digests:  # asked for twice: to check the manifest, and to run
+            self._digests[job] = self._digest(stage, *arguments)
+        return self._digests[job]
+
+    def _digest(self, stage: str, *arguments: str) -> str:
         function = STAGES[stage]
         module = Path(function.__code__.co_filename)
         files, unused = _files(stage, *arguments)
         code = provenance.code_digest(module, stage, *files, leaving_out=unused)
         facts = _FACTS[stage](self, *arguments) if stage in _FACTS else ()
-        return hashlib.sha256(repr((code, facts)).encode()).hexdigest()
+        return hashlib.sha256(repr((code, facts, _commands()[stage])).encode()).hexdigest()
 
     def again(self, stage: str, *arguments: str) -> list[Path]:
         """Return the input that makes a job run again, nothing while its manifest holds."""
@@ -173,6 +182,22 @@ def _named(places: Places, faults: Mapping[str, str]) -> str:
     first, *others = faults
     more = f" (and {len(others)} more)" if others else ""
     return f"{places.folder / first}{more}: {faults[first]}"
+
+
+@cache
+def _commands() -> dict[str, str]:
+    """Return the shell commands of each stage, as the rules state them."""
+    text = "".join(file.read_text(encoding="utf-8") for file in sorted(RULES.glob("*.smk")))
+    commands = re.findall(r"^ +shell:\n((?: +[\"'].*\n)+)", text, re.MULTILINE)
+    found: dict[str, str] = {}
+    for command in commands:
+        for name in _RUNS.findall(command):
+            # `report` has a rule for each kind of study.
+            found[name] = found.get(name, "") + command
+    return found
+
+
+_RUNS = re.compile(r"gearmesh\.pipeline (\w+) ")
 
 
 def _files(stage: str, *arguments: str) -> tuple[list[Path], list[Path]]:
@@ -319,11 +344,20 @@ def load(
             f"the code would come from {provenance.PACKAGE}, not from this folder; "
             "run 'make reproduce', which sets up an environment here"
         )
+    _name_the_user()
     plan = Plan(load_study(str(path)))
-    load_settings(layout.SETTINGS)  # a mistake in it, or in the ledger, is reported before all jobs
-    if plan.study.claims:
-        load_ledger(plan.study.claims)
-    return replace(plan, holding=plan.check()) if main else plan
+    _ = plan.designs, plan.ledger  # a mistake in them is reported before all jobs
+    if main:
+        plan.holding = plan.check()
+    return plan
+
+
+def _name_the_user() -> None:
+    """Give a name to a user whom the system does not know; Snakemake cannot run without one."""
+    try:
+        getpass.getuser()
+    except (KeyError, OSError):
+        os.environ["USER"] = str(os.getuid())
 
 
 def prefix(plan: Plan) -> str:

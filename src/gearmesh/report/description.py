@@ -31,8 +31,8 @@ def derived(study: Study) -> list[Parameter]:
 def computation(study: Study, resonance: xr.Dataset) -> Iterable[tuple[str, str]]:
     """Yield rows on the cases, the solver and the versions of the software."""
     pair, cases, nu = study.pair, study.cases, study.nu
-    periods = pair.revolutions * pair.teeth
-    kept = pair.kept_revolutions * pair.teeth
+    periods = pair.revolutions * pair.teeth_3
+    kept = pair.kept_revolutions * pair.teeth_3
     yield "Cases", f"{len(cases)}, of which {sum(c.time_course for c in cases)} with time courses"
     yield "Status", _statuses(resonance)
     yield "Mesh frequency", f"{len(nu)} values of ν_s from {number(nu[0])} to {number(nu[-1])}"

@@ -120,7 +120,7 @@ def _plain(value: object) -> object:
 
 def strobe_spread(pair: Pair) -> curves.Measure:
     """Return a measure of the spread of the kept stroboscopic points; a periodic motion has 0."""
-    kept = pair.kept_revolutions * pair.teeth + 1
+    kept = pair.kept_revolutions * pair.teeth_3 + 1
 
     def spread(response: Response) -> float:
         points = response.strobe_y[-kept:], response.strobe_v[-kept:]

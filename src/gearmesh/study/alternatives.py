@@ -8,15 +8,12 @@ from collections.abc import Callable, Mapping
 from functools import partial
 from typing import Any, NamedTuple
 
-from gearmesh.model import stiffness
 from gearmesh.study.parameters import Parameters
-from gearmesh.study.relative import read_parameter
-from gearmesh.study.schema import Section, quantity
+from gearmesh.study.relative import MM_PER_M, read_parameter, stated_mean_stiffness
+from gearmesh.study.schema import Section, of_wheels, quantity
 
 KG_PER_N_S2_MM = 1000.0
 """1 N s²/mm = 1000 kg: it makes stiffnesses in N/mm and masses in kg consistent."""
-
-MM_PER_M = 1000.0
 
 
 class Alternatives(Section):
@@ -101,7 +98,7 @@ def with_stored(data: Mapping[str, Any]) -> dict[str, Any]:
 
 def _static_deflection(read: Read) -> dict[str, str]:
     force = read("torque") * MM_PER_M / _base_radii(read)[0]
-    return {"static_deflection": f"{force / _stiffness_mean(read)!r} mm"}
+    return {"static_deflection": f"{force / stated_mean_stiffness(read)!r} mm"}
 
 
 def _reduced_mass(read: Read) -> dict[str, object]:
@@ -117,7 +114,7 @@ def _reduced_mass(read: Read) -> dict[str, object]:
 
 def _damping(read: Read) -> dict[str, str]:
     mass = read("reduced_mass") / KG_PER_N_S2_MM
-    critical = 2.0 * math.sqrt(_stiffness_mean(read) * mass)
+    critical = 2.0 * math.sqrt(stated_mean_stiffness(read) * mass)
     return {"damping": f"{read('damping_ratio') * critical!r} N*s/mm"}
 
 
@@ -128,18 +125,8 @@ _STORED: dict[str, Callable[[Read], dict[str, Any]]] = {
 }
 
 
-def of_wheels(value: Any) -> tuple[Any, Any]:
-    """Return the values for wheels 3 and 2; one serves both."""
-    return value if isinstance(value, tuple) else (value, value)
-
-
 def _base_radii(read: Read) -> tuple[float, float]:
     """Return R_b3 and R_b2 in mm."""
     pitch = read("module") / 2.0 * math.cos(read("pressure_angle"))
     teeth_3, teeth_2 = of_wheels(read("teeth"))
     return pitch * teeth_3, pitch * teeth_2
-
-
-def _stiffness_mean(read: Read) -> float:
-    highest = read("mesh_stiffness_max")
-    return stiffness.mean(read("contact_ratio"), highest, read("stiffness_ratio") * highest)

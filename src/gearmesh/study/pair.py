@@ -20,15 +20,14 @@ from gearmesh.study.alternatives import (
     ALTERNATIVES,
     DECLARED,
     KG_PER_N_S2_MM,
-    MM_PER_M,
     excluded_by,
     with_stored,
 )
 from gearmesh.study.parameters import SETTINGS, Parameters
 from gearmesh.study.problem import problem_of
 from gearmesh.study.provenance import DEFAULT, SETTING, STATED, Statement
-from gearmesh.study.relative import resolved
-from gearmesh.study.schema import read_declared, validate
+from gearmesh.study.relative import MM_PER_M, mean_stiffness, resolved
+from gearmesh.study.schema import of_wheels, read_declared, validate
 
 
 class Parameter(NamedTuple):
@@ -60,7 +59,7 @@ class Parameter(NamedTuple):
 
 
 class Pair(Parameters):
-    """A spur gear pair of equal wheels, with the settings of its runs.
+    """A spur gear pair, with the settings of its runs.
 
     `gearmesh.study.parameters` declares the fields; `Pair.parameters` lists them with units.
     Equation numbers are those of the paper.
@@ -167,8 +166,11 @@ class Pair(Parameters):
 
     @property
     def stiffness_mean(self) -> float:
-        """C_s in N/mm, eq. (5)."""
-        return stiffness.mean(self.contact_ratio, self.mesh_stiffness_max, self.stiffness_min)
+        """C_s in N/mm: eq. (5), or the mean of a stiffness that is stated as a table."""
+        return mean_stiffness(
+            *(self.contact_ratio, self.mesh_stiffness_max, self.stiffness_ratio),
+            *(self.stiffness_table, self.tooth_pair_stiffness),
+        )
 
     @property
     def natural_frequency(self) -> float:
@@ -178,7 +180,7 @@ class Pair(Parameters):
     @property
     def resonance_speed(self) -> float:
         """Speed of wheel 3 in rpm at which ν_s = 1: 60 Ω_s/(2π Z_3)."""
-        return 60.0 * self.natural_frequency / (2.0 * math.pi * self.teeth)
+        return 60.0 * self.natural_frequency / (2.0 * math.pi * self.teeth_3)
 
     @property
     def damping_ratio(self) -> float:
@@ -203,11 +205,12 @@ class Pair(Parameters):
     @property
     def inertia(self) -> tuple[float, float]:
         """J_3 and J_2 in kg·m², with m_red = 1/(R_b3²/J_3 + R_b2²/J_2)."""
-        square = (self.base_radius / MM_PER_M) ** 2
         masses = 1.0 + self.mass_ratio, 1.0 + 1.0 / self.mass_ratio
-        return self._as_stated(
-            "inertia", tuple(mass * self.reduced_mass * square for mass in masses)
+        inertias = (
+            mass * self.reduced_mass * (radius / MM_PER_M) ** 2
+            for mass, radius in zip(masses, self.base_radii, strict=True)
         )
+        return self._as_stated("inertia", tuple(inertias))
 
     def _as_stated(self, name: str, computed: Any) -> Any:
         """Return an alternative as it was stated; converting it back would round it."""
@@ -222,9 +225,23 @@ class Pair(Parameters):
         return self.damping_length * self.natural_frequency
 
     @property
+    def teeth_3(self) -> int:
+        """Z_3, the mesh periods in a revolution of wheel 3, which is what revolutions count."""
+        return int(of_wheels(self.teeth)[0])
+
+    @property
+    def base_radii(self) -> tuple[float, float]:
+        """R_b3 and R_b2 in mm."""
+        teeth_3, teeth_2 = of_wheels(self.teeth)
+        return (
+            self.module * teeth_3 / 2 * math.cos(self.pressure_angle),
+            self.module * teeth_2 / 2 * math.cos(self.pressure_angle),
+        )
+
+    @property
     def base_radius(self) -> float:
-        """R_b = m_n Z cos(α)/2 in mm."""
-        return self.module * self.teeth / 2 * math.cos(self.pressure_angle)
+        """R_b3 = m_n Z_3 cos(α)/2 in mm."""
+        return self.base_radii[0]
 
     @property
     def nu_min_ratio(self) -> float:
@@ -243,8 +260,9 @@ class Pair(Parameters):
 
     @property
     def standard_contact_ratio(self) -> float:
-        """Contact ratio of two standard wheels (addendum m_n) with Z teeth and angle α."""
-        return Involute(self.module, (self.teeth, self.teeth), self.pressure_angle).contact_ratio
+        """Contact ratio of two standard wheels (addendum m_n) with Z_3 and Z_2 teeth, angle α."""
+        wheels = Involute(self.module, of_wheels(self.teeth), self.pressure_angle)
+        return wheels.contact_ratio
 
     def problem(self, variant: Variant, nu: float) -> Problem:
         """State one run in static deflections, 1/Ω_s and static forces.

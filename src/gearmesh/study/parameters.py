@@ -1,10 +1,11 @@
 """The parameters of a gear pair and of its runs: unit, symbol, meaning and range of each."""
 
 import math
-from typing import Self
+from typing import Literal, Self
 
 from pydantic import model_validator
 
+from gearmesh.study.harmonics import BacklashHarmonic, ToothStiffness, TorqueHarmonic
 from gearmesh.study.schema import Section, quantity
 
 SETTINGS = frozenset(
@@ -14,13 +15,21 @@ SETTINGS = frozenset(
 """Parameters of a run. They state nothing about the gear."""
 
 
+_STIFFNESSES = (
+    "stiffness_harmonics",
+    "stiffness_fourier",
+    "stiffness_table",
+    "tooth_pair_stiffness",
+)
+
+
 class Parameters(Section):
     """The declared parameters, in the order in which they are listed.
 
     `gearmesh.study.pair.Pair` adds how each was stated and what follows from them.
     """
 
-    contact_ratio: float = quantity("1", "ε", "contact ratio (mesh duration)", 1.0, 2.0)
+    contact_ratio: float = quantity("1", "ε", "contact ratio (mesh duration)", 1.0, 3.0)
     stiffness_ratio: float = quantity("1", "κ", "stiffness ratio C_min/C_max", 1e-3, 1.0)
     mesh_stiffness_max: float = quantity(
         "N/mm", "C_max", "mesh stiffness in double contact", 1.0, 1e9
@@ -33,7 +42,9 @@ class Parameters(Section):
         *(1e-6, 1e6),
         default=1.0,
     )
-    teeth: int = quantity("1", "Z", "number of teeth of each wheel", 3, 1000)
+    teeth: int | tuple[int, int] = quantity(
+        "1", "Z", "number of teeth of the wheels", 3, 1000, may_differ=True
+    )
     damping: float = quantity(
         "N*s/mm", "k", "damping of every term that a variant switches on", 0.0, 1e6
     )
@@ -60,12 +71,14 @@ class Parameters(Section):
     damping_length: float = quantity(
         "mm", "ℓ", "length in the velocity scale ℓ Ω_s of nonlinear damping", 1e-6, 1e6
     )
-    body_mass: float = quantity("kg", "m", "mass of each wheel body in y and z", 1e-6, 1e9)
-    bearing_stiffness: float = quantity(
-        "N/mm", "c_b", "stiffness of the bearing of each body in y and z", 1e-3, 1e12
+    body_mass: float | tuple[float, float] = quantity(
+        "kg", "m", "mass of the wheel bodies in y and z", 1e-6, 1e9, may_differ=True
     )
-    bearing_damping_ratio: float = quantity(
-        "1", "ζ_b", "damping ratio b_b/(2 √(c_b m)) of each bearing", 0.0, 1.0
+    bearing_stiffness: float | tuple[float, float] = quantity(
+        "N/mm", "c_b", "stiffness of the bearings in y and z", 1e-3, 1e12, may_differ=True
+    )
+    bearing_damping_ratio: float | tuple[float, float] = quantity(
+        "1", "ζ_b", "damping ratio b_b/(2 √(c_b m)) of the bearings", 0.0, 1.0, may_differ=True
     )
     friction_coefficient: float = quantity("1", "f_T", "coefficient of dry friction", 0.0, 1.0)
     pressure_angle: float = quantity("rad", "α", "pressure angle", 1e-3, 0.8)
@@ -87,6 +100,65 @@ class Parameters(Section):
     stiffness_harmonics: int = quantity(
         *("1", "n", "terms of eq. (4) that are kept; 0 is the closed rectangular wave", 0, 100),
         default=0,
+    )
+    bearing_stiffness_z: float | tuple[float, float] | None = quantity(
+        *("N/mm", "c_bz", "stiffness of the bearings across the mesh line, if not c_b", 1e-3, 1e12),
+        may_differ=True,
+        default=None,
+    )
+    bearing_damping_ratio_z: float | tuple[float, float] | None = quantity(
+        *("1", "ζ_bz", "damping ratio of the bearings across the mesh line, if not ζ_b", 0.0, 1.0),
+        may_differ=True,
+        default=None,
+    )
+    torsional_damping: tuple[float, float] = quantity(
+        *("N*m*s/rad", "b_φ", "damping of the rotation of the wheels to the frame", 0.0, 1e9),
+        of_wheels=True,
+        default=(0.0, 0.0),
+    )
+    torque_harmonics: tuple[TorqueHarmonic, ...] = quantity(
+        *("1", "a_n, b_n", "harmonics of the torques, relative to the static ones", 0.0, 0.0),
+        structured=True,
+        default=(),
+    )
+    stiffness_fourier: tuple[tuple[float, float], ...] = quantity(
+        *("1", "U_n, V_n", "(cos, sin) amplitudes of C(t)/C_s, harmonics 1, 2, …", -10.0, 10.0),
+        default=(),
+    )
+    stiffness_table: tuple[float, ...] = quantity(
+        *("N/mm", "C(t)", "mesh stiffness at equal distances over a mesh period", 0.0, 1e9),
+        default=(),
+    )
+    tooth_pair_stiffness: tuple[float, ...] = quantity(
+        *("N/mm", "c(x)", "stiffness of a pair of teeth at equal distances along its path"),
+        *(0.0, 1e9),
+        default=(),
+    )
+    tooth_factors: tuple[ToothStiffness, ...] = quantity(
+        *("1", "c_z", "factors of the stiffness of single teeth", 0.0, 0.0),
+        structured=True,
+        default=(),
+    )
+    restoring_2: float = quantity(
+        "1", "c_2", "quadratic part of the elastic force, in 1/y_st", -10.0, 10.0, default=0.0
+    )
+    restoring_3: float = quantity(
+        "1", "c_3", "cubic part of the elastic force, in 1/y_st²", -10.0, 10.0, default=0.0
+    )
+    non_adhesive: bool = quantity(
+        *("1", "N ≥ 0", "whether the contact force never pulls", 0.0, 1.0),
+        structured=True,
+        default=False,
+    )
+    damping_follows_stiffness: Literal["none", "sqrt", "linear"] = quantity(
+        *("1", "k(C)", "how the damping of the material follows C(t)/C_s", 0.0, 1.0),
+        structured=True,
+        default="none",
+    )
+    backlash_harmonics: tuple[BacklashHarmonic, ...] = quantity(
+        *("mm", "s(t)", "harmonics of the backlash", 0.0, 0.0),
+        structured=True,
+        default=(),
     )
     initial_phase: float = quantity(
         *("1", "p_0", "mesh phase at which a run starts; 0: middle of the C_max pulse", 0.0, 1.0),
@@ -110,6 +182,24 @@ class Parameters(Section):
         *("1", "tol", "local error tolerance, relative to y_st and y_st Ω_s", 1e-13, 1e-3),
         default=1e-10,
     )
+
+    @model_validator(mode="after")
+    def _states_one_stiffness(self) -> Self:
+        stated = [name for name in _STIFFNESSES if getattr(self, name)]
+        if len(stated) > 1:
+            raise ValueError(f"{stated[1]}: stated beside {stated[0]}; allowed is one of the two")
+        for name in ("stiffness_table", "tooth_pair_stiffness"):
+            values = getattr(self, name)
+            if values and (len(values) < 2 or sum(values) == 0.0):
+                raise ValueError(
+                    f"{name}: found {list(values)}; allowed are two values or more, not all 0"
+                )
+        if self.contact_ratio > 2.0 and not self.tooth_pair_stiffness:
+            raise ValueError(
+                f"contact_ratio: found {self.contact_ratio:g}; allowed are 1 to 2, and up to 3 "
+                "with tooth_pair_stiffness: eqs. (4) and (5) hold no further"
+            )
+        return self
 
     @model_validator(mode="after")
     def _keeps_what_it_runs(self) -> Self:

@@ -1,12 +1,13 @@
 """The dimensionless problem that a pair states for one variant and mesh frequency."""
 
 from dataclasses import replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
-from gearmesh.errors import InputError
 from gearmesh.model.motion import state_at
-from gearmesh.model.problem import Problem
+from gearmesh.model.problem import GeneralTerms, Problem, ToothFactor, Wheel
 from gearmesh.model.variants import Variant
+from gearmesh.study.relative import MM_PER_M
+from gearmesh.study.schema import of_wheels
 
 if TYPE_CHECKING:
     from gearmesh.study.pair import Pair
@@ -14,12 +15,9 @@ if TYPE_CHECKING:
 
 def problem_of(pair: "Pair", variant: Variant, nu: float) -> Problem:
     """State one run in static deflections, 1/Ω_s and static forces (`Pair.problem`)."""
-    if pair.mass_ratio != 1.0:
-        raise InputError(
-            f"mass_ratio: found {pair.mass_ratio:g}; allowed is 1, wheels with equal J/R_b²"
-        )
     y_st, c_s = pair.static_deflection, pair.stiffness_mean
     eccentricity_3, eccentricity_2 = pair.eccentricity
+    wheel_3, wheel_2 = (_wheel(pair, place) for place in (0, 1))
     problem = Problem(
         nu=nu,
         contact_ratio=pair.contact_ratio,
@@ -32,13 +30,13 @@ def problem_of(pair: "Pair", variant: Variant, nu: float) -> Problem:
             pair, variant, variant.lubricant_powers, ("damping_1m", "damping_2m", "damping_3m")
         ),
         backlash=pair.backlash / y_st,
-        body_mass=pair.body_mass / pair.reduced_mass,
-        bearing_stiffness=pair.bearing_stiffness / c_s,
-        bearing_damping_ratio=pair.bearing_damping_ratio,
+        body_mass=wheel_3.body_mass,
+        bearing_stiffness=wheel_3.bearing_stiffness[0],
+        bearing_damping_ratio=wheel_3.bearing_damping_ratio[0],
         friction_coefficient=pair.friction_coefficient,
         pressure_angle=pair.pressure_angle,
-        teeth=pair.teeth,
-        base_radius=pair.base_radius / y_st,
+        teeth=wheel_3.teeth,
+        base_radius=wheel_3.base_radius,
         eccentricity_3=eccentricity_3 / y_st,
         eccentricity_2=eccentricity_2 / y_st,
         eccentricity_angle=pair.eccentricity_angle,
@@ -47,11 +45,73 @@ def problem_of(pair: "Pair", variant: Variant, nu: float) -> Problem:
         initial_phase=pair.initial_phase,
         revolutions=pair.revolutions,
         kept_revolutions=pair.kept_revolutions,
+        wheels=None if _alike(wheel_3, wheel_2) else (wheel_3, wheel_2),
+        terms=_general_terms(pair),
     )
     if pair.initial_displacement is None and pair.initial_velocity == 0.0:
         return problem  # at rest in static equilibrium
     y = 1.0 if pair.initial_displacement is None else pair.initial_displacement / y_st
     return replace(problem, initial_state=state_at(problem, y, pair.initial_velocity / y_st))
+
+
+def _wheel(pair: "Pair", place: int) -> Wheel:
+    """Return wheel 3 or 2, the places 0 and 1."""
+
+    def of(name: str) -> Any:
+        return of_wheels(getattr(pair, name))[place]
+
+    across, ratio_across = of("bearing_stiffness_z"), of("bearing_damping_ratio_z")
+    along, ratio = of("bearing_stiffness"), of("bearing_damping_ratio")
+    return Wheel(
+        teeth=of("teeth"),
+        base_radius=pair.base_radii[place] / pair.static_deflection,
+        inertia=(1.0 + pair.mass_ratio, 1.0 + 1.0 / pair.mass_ratio)[place],
+        body_mass=of("body_mass") / pair.reduced_mass,
+        bearing_stiffness=(
+            along / pair.stiffness_mean,
+            (along if across is None else across) / pair.stiffness_mean,
+        ),
+        bearing_damping_ratio=(ratio, ratio if ratio_across is None else ratio_across),
+    )
+
+
+def _alike(wheel_3: Wheel, wheel_2: Wheel) -> bool:
+    """Return whether the wheels are equal, on bearings that are equal along and across."""
+    stiffnesses, ratios = wheel_3.bearing_stiffness, wheel_3.bearing_damping_ratio
+    return wheel_3 == wheel_2 and stiffnesses[0] == stiffnesses[1] and ratios[0] == ratios[1]
+
+
+def _general_terms(pair: "Pair") -> GeneralTerms:
+    teeth, c_s = of_wheels(pair.teeth), pair.stiffness_mean
+    table = pair.stiffness_table
+    torsion = [
+        b_phi * MM_PER_M / radius**2 * pair.natural_frequency / c_s
+        for b_phi, radius in zip(pair.torsional_damping, pair.base_radii, strict=True)
+    ]
+    return GeneralTerms(
+        torque_harmonics_3=tuple(
+            wave.harmonic(teeth) for wave in pair.torque_harmonics if wave.wheel == 3
+        ),
+        torque_harmonics_2=tuple(
+            wave.harmonic(teeth) for wave in pair.torque_harmonics if wave.wheel == 2
+        ),
+        torsional_damping=(torsion[0], torsion[1]),
+        stiffness_fourier=pair.stiffness_fourier,
+        stiffness_table=tuple(
+            (i / len(table), value / c_s) for i, value in enumerate((*table, *table[:1]))
+        ),
+        tooth_pair_stiffness=tuple(value / c_s for value in pair.tooth_pair_stiffness),
+        tooth_factors=tuple(
+            ToothFactor(one.wheel, one.tooth, one.factor) for one in pair.tooth_factors
+        ),
+        restoring_2=pair.restoring_2,
+        restoring_3=pair.restoring_3,
+        non_adhesive=pair.non_adhesive,
+        damping_power={"none": 0.0, "sqrt": 0.5, "linear": 1.0}[pair.damping_follows_stiffness],
+        backlash_harmonics=tuple(
+            wave.harmonic(teeth, pair.static_deflection) for wave in pair.backlash_harmonics
+        ),
+    )
 
 
 def _damping_law(

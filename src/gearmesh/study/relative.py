@@ -1,12 +1,16 @@
 """Values that are stated as multiples of a scale: ``8 y_st``, ``1000 m_red``, ``0.5 C_s``."""
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
 from gearmesh.model import stiffness
 from gearmesh.study import units
 from gearmesh.study.parameters import Parameters
 from gearmesh.study.schema import read_declared, shown
+
+MM_PER_M = 1000.0
+
+_TABLES = ("stiffness_table", "tooth_pair_stiffness")
 
 
 def resolved(data: dict[str, Any]) -> dict[str, Any]:
@@ -24,15 +28,36 @@ def _scale(scale: str, data: Mapping[str, Any], user: str) -> float:
     """Return the size of a scale, for `user` and other parameters that are stated in it."""
     declared = Parameters.declarations()
 
-    def read(parameter: str) -> float:
-        return float(read_parameter(parameter, data, declared, f"{user} is stated in {scale}"))
+    def read(parameter: str) -> Any:
+        return read_parameter(parameter, data, declared, f"{user} is stated in {scale}")
 
     if scale == "y_st":
-        return read("static_deflection")
+        return float(read("static_deflection"))
     if scale == "m_red":
-        return read("reduced_mass")
-    highest = read("mesh_stiffness_max")
-    return stiffness.mean(read("contact_ratio"), highest, read("stiffness_ratio") * highest)
+        return float(read("reduced_mass"))
+    return stated_mean_stiffness(read)
+
+
+def mean_stiffness(
+    contact_ratio: float,
+    highest: float,
+    ratio: float,
+    table: Sequence[float],
+    tooth_pair: Sequence[float],
+) -> float:
+    """Return C_s in N/mm: of a table of the mesh or of a pair of teeth, else by eq. (5)."""
+    if tooth_pair:
+        inner = sum(tooth_pair) - 0.5 * (tooth_pair[0] + tooth_pair[-1])
+        return contact_ratio * inner / (len(tooth_pair) - 1)
+    if table:
+        return sum(table) / len(table)
+    return stiffness.mean(contact_ratio, highest, ratio * highest)
+
+
+def stated_mean_stiffness(read: Callable[[str], Any]) -> float:
+    """Return C_s in N/mm; `read` returns a parameter by its name, in its unit."""
+    names = ("contact_ratio", "mesh_stiffness_max", "stiffness_ratio")
+    return mean_stiffness(*(read(name) for name in (*names, *_TABLES)))
 
 
 def read_parameter(
@@ -58,12 +83,18 @@ def read_parameter(
     ValueError
         If it is missing or wrong; the message begins with its name.
     """
+    if name in _TABLES and not data.get(name):
+        return ()
     if data.get(name) is None:
         raise ValueError(f"{name}: missing; {reason}")
     try:
         value = read_declared(data[name], declared[name])
     except ValueError as error:
         raise ValueError(f"{name}: found {shown(data[name])}; {error}") from None
-    if isinstance(value, tuple) and not declared[name]["of_wheels"]:
+    if (
+        isinstance(value, tuple)
+        and name not in _TABLES
+        and not (declared[name]["of_wheels"] or declared[name]["may_differ"])
+    ):
         raise ValueError(f"{name}: found {shown(data[name])}; allowed is a single value")
     return value

@@ -39,15 +39,18 @@ def quantity(
     high: float,
     *,
     of_wheels: bool = False,
+    may_differ: bool = False,
+    structured: bool = False,
     **options: Any,
 ) -> Any:
     """Declare a quantity that is stored in `unit` and lies between `low` and `high`.
 
-    `of_wheels` declares two values, for wheels 3 and 2; one value serves both. `options` are those
-    of ``pydantic.Field``, such as a default.
+    `of_wheels` declares two values, for wheels 3 and 2; one value serves both. `may_differ`
+    declares one value, or two where the wheels differ. A `structured` field is a list of sections,
+    or a word. `options` are those of ``pydantic.Field``, such as a default.
     """
     extra: dict[str, Any] = {"unit": unit, "symbol": symbol, "low": low, "high": high}
-    extra["of_wheels"] = of_wheels
+    extra |= {"of_wheels": of_wheels, "may_differ": may_differ, "structured": structured}
     return Field(description=description, json_schema_extra=extra, **options)
 
 
@@ -78,10 +81,22 @@ class Section(BaseModel):
 
 def read_declared(value: object, declared: Mapping[str, Any]) -> object:
     """Read a quantity as it is declared: of the wheels, one value serves both."""
-    return (_read_of_wheels if declared["of_wheels"] else read_quantity)(value, declared)
+    if declared["structured"]:
+        return value
+    if declared["of_wheels"]:
+        return _read_of_wheels(value, declared)
+    if declared["may_differ"] and isinstance(value, list | tuple):
+        three, two = _read_of_wheels(value, declared)
+        return three if three == two else (three, two)
+    return read_quantity(value, declared)
 
 
-def _read_of_wheels(value: object, declared: Mapping[str, Any]) -> object:
+def of_wheels(value: Any) -> tuple[Any, Any]:
+    """Return the values for wheels 3 and 2; one serves both."""
+    return value if isinstance(value, tuple) else (value, value)
+
+
+def _read_of_wheels(value: object, declared: Mapping[str, Any]) -> Any:
     if not isinstance(value, list | tuple):
         return (read_quantity(value, declared),) * 2
     if len(value) != 2 or any(isinstance(item, list | tuple) for item in value):

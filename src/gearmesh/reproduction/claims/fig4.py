@@ -8,6 +8,7 @@ from gearmesh.model.contact import NORMAL_MESH
 from gearmesh.reproduction.claims.evidence import Evidence
 from gearmesh.reproduction.claims.fig2 import LUBRICANT
 from gearmesh.reproduction.frequencies import FIG_4
+from gearmesh.study.schema import of_wheels
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -41,7 +42,7 @@ def corners(case: "xr.Dataset", evidence: Evidence) -> dict[str, float]:
     if not at_switch.any() or not elsewhere.any():
         return {"at the switches": np.nan, "elsewhere": np.nan}
     # A force on the mesh line turns the wheels and also pushes their bodies along the line.
-    mobility = 1 + 2 * pair.reduced_mass / pair.body_mass
+    mobility = 1 + sum(pair.reduced_mass / mass for mass in of_wheels(pair.body_mass))
     caused = -mobility * (stiffening * (y[1:] + y[:-1]) / 2)[1:-1][at_switch]
     jump = jumps[at_switch]
     return {

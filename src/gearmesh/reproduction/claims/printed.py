@@ -56,7 +56,7 @@ def resonance_of_least_stiffness(evidence: Evidence) -> tuple[float, str]:
 
 def standard_contact_ratio(evidence: Evidence) -> tuple[float, str]:
     """P6: contact ratio of a standard pair at the pressure angle."""
-    angle, teeth = evidence.pair.pressure_angle, evidence.pair.teeth
+    angle, teeth = evidence.pair.pressure_angle, evidence.pair.teeth_3
     base, tip = teeth * math.cos(angle) / 2, teeth / 2 + 1
     path = 2 * (math.sqrt(tip**2 - base**2) - base * math.tan(angle))
     ratio = path / (math.pi * math.cos(angle))

@@ -44,7 +44,7 @@ def scale(dataset: xr.Dataset) -> Scale:
     return Scale(
         static_deflection=y_st,
         backlash=parameters["backlash"] / y_st,
-        kept_periods=parameters["kept_revolutions"] * parameters["teeth"],
+        kept_periods=parameters["kept_revolutions"] * int(np.ravel(parameters["teeth"])[0]),
         damping=parameters["damping"],
     )
 

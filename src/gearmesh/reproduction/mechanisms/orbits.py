@@ -86,6 +86,6 @@ def doubled(single: Sequence[Branch], limits: Range) -> Iterator[Branch]:
 def _double_period(point: SpecialPoint) -> Orbit:
     """Return an orbit of twice the period, close to a flip in ν_s."""
     orbit = point.orbit
-    bare = special_points.SpecialPoint(point.kind, point.nu, point.parameters, orbit.found)
+    bare = special_points.SpecialPoint(point.kind, point.nu, point.parameters, orbit.reduced)
     found = dimensionless.double_period(bare)
     return Orbit(orbit.pair, orbit.variant, found.problem.nu, found)

@@ -17,6 +17,7 @@ from gearmesh.model.variants import variant
 from gearmesh.solvers.response import Response
 from gearmesh.solvers.simulation import simulate
 from gearmesh.study.pair import Pair
+from gearmesh.study.schema import of_wheels
 
 VARIANT = "c-lubricant"
 
@@ -61,7 +62,7 @@ def basins(pair: Pair, branches: xr.Dataset, resolution: int) -> xr.Dataset:
         Starts along each axis.
     """
     heights, rates = np.linspace(*HEIGHTS, resolution), np.linspace(*RATES, resolution)
-    rest = -2.0 * pair.stiffness_mean / pair.bearing_stiffness
+    rest = -sum(pair.stiffness_mean / bearing for bearing in of_wheels(pair.bearing_stiffness))
     states = [State(float(y), float(v), rest, 0.0) for y, v in product(heights, rates)]
     runs = [
         replace(problem, initial_state=state)

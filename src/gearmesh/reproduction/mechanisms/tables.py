@@ -87,7 +87,7 @@ def rows(variant: str, branches: Sequence[Branch], parameters: Mapping[str, Any]
 
 
 def _row(variant: str, number: int, point: SpecialPoint) -> Row:
-    found = point.orbit.found
+    found = point.orbit.reduced
     return {
         "variant": variant,
         "kind": point.kind,

@@ -12,6 +12,7 @@ from gearmesh.model.segments import segments
 from gearmesh.solvers.compilation import persistent
 from gearmesh.solvers.limits import highest_frequency
 from gearmesh.solvers.reduced import variational
+from gearmesh.solvers.reduced.deviations import DEVIATIONS, SIZE
 
 TOLERANCE = 1e-16
 """Bound of the last terms of a step, relative to the state: rounding decides the accuracy."""
@@ -50,6 +51,8 @@ class Passage:
         y, y', b, b' at the end.
     jacobian : ndarray, shape (4, 4)
         Derivatives of `end` with respect to the state at the start.
+    stretched : ndarray, shape (4,)
+        Derivative of `end` with respect to the logarithm of the mesh period.
     events : ndarray, shape (n, variational.EVENT_SIZE)
         Extrema, changes of regime, and jumps of C(t) and gamma(t), with the columns of
         `gearmesh.solvers.reduced.variational`; times from the start, in tau_s.
@@ -66,6 +69,7 @@ class Passage:
     status: str
     end: np.ndarray
     jacobian: np.ndarray
+    stretched: np.ndarray
     events: np.ndarray
     damping: float
     log_determinant: float
@@ -106,7 +110,8 @@ def passage(
     return Passage(
         STATUSES[outcome],
         end,
-        jacobian,
+        jacobian[:, :SIZE],
+        jacobian[:, SIZE],
         events[:n_events],
         damping,
         -(1.0 + two_mu) * damping - bearing * periods * problem.period,
@@ -136,8 +141,9 @@ def _move(
     samples: np.ndarray = _NO_SAMPLES,
     samples_per_period: int = 0,
 ) -> tuple[tuple[int, int, float, float], np.ndarray, np.ndarray]:
-    """Return what the compiled code returns, the state at the end and its Jacobian."""
-    end, jacobian = np.array(state, float), np.eye(4)
+    """Return what the compiled code returns, the state at the end and its derivatives."""
+    end = np.array(state, float)
+    jacobian = np.eye(SIZE, DEVIATIONS)
     measured = _propagate(
         parts,
         np.array([problem.lubricant, problem.material]),

@@ -4,24 +4,26 @@ The equations are those of `gearmesh.solvers.reduced.taylor`, with y = u + b, v 
 
     y'' = 1 + g E - (1 + 2 mu) N - 2 zeta w b' - w^2 b,    b'' = -2 mu N - 2 zeta w b' - w^2 b.
 
-A deviation (dy, dv, db, db') of the state obeys the linearised equations: without the constant 1,
-with c dy in place of E and c dy + D dv in place of N, where D = k_1 + 2 k_2 |v| + 3 k_3 v^2. The
-Taylor series of the motion and of the deviations in the four directions of the state are computed
-together, so the Jacobian of the flow is as accurate as the flow. At a contact event the vector
-field changes at a time that depends on the state, so the deviations jump (`saltation`). C(t) and
-gamma(t) jump at fixed times, so the deviations stay continuous there.
+The deviations of the motion (`gearmesh.solvers.reduced.deviations`) are carried along, so the
+Jacobian of the flow is as accurate as the flow. At a contact event the vector field changes at a
+time that depends on the state, so the deviations jump (`saltation`). C(t) and gamma(t) jump at
+fixed times, so the deviations stay continuous there.
 """
 
 import numpy as np
 
 from gearmesh.model.contact import CONTACT_LOSS, INVERSE_MESH, NORMAL_MESH
 from gearmesh.solvers.compilation import inner
-
-ORDER = 20
-"""Degree of the Taylor polynomials."""
-
-SIZE = 4
-"""Size of the state (y, v, b, b')."""
+from gearmesh.solvers.reduced.deviations import (
+    DEVIATIONS,
+    FORCE_PLACES,
+    ORDER,
+    SIZE,
+    expand,
+    least_force_in,
+    longest_step,
+    write_deviations,
+)
 
 TURN, CROSSING, SWITCH = range(3)
 """Kinds of events: an extremum of y, a change of regime, a jump of C(t) or gamma(t)."""
@@ -38,7 +40,6 @@ _NARROWEST = 1e-8  # share of a step; roots closer than this are not separated
 _SAMPLE_EDGE = 1e-9  # share of the sampling interval
 _MOST_STEPS_PER_SEGMENT = 1000
 _FARTHEST = 1e9
-_FORCE_PLACES = 8
 
 
 @inner
@@ -87,67 +88,6 @@ def vector_field(state, direction, c, offset, g, law, bearings):
     rates[2] = state[3]
     rates[3] = bearing - bearings[0] * normal
     return rates
-
-
-@inner
-def _expand(series, slope, square, direction, c, offset, g, law, bearings):
-    """Write the series of the motion (column 0) and of its deviations (columns 1 to 4).
-
-    `series` has shape (5, 4, ORDER + 1); its coefficients of degree 0 are input. The series of D is
-    written to `slope`.
-    """
-    two_mu, support, damped = bearings[0], bearings[1], bearings[2]
-    share = 1.0 + two_mu
-    v = series[0, 1]
-    for k in range(ORDER):
-        part = 1.0 / (k + 1.0)
-        total = 0.0
-        for i in range(k + 1):
-            total += v[i] * v[k - i]
-        square[k] = total
-        cube = 0.0
-        if law[2] != 0.0:
-            for i in range(k + 1):
-                cube += square[i] * v[k - i]
-        slope[k] = 2.0 * law[1] * direction * v[k] + 3.0 * law[2] * total
-        if k == 0:
-            slope[0] += law[0]
-        for column in range(SIZE + 1):
-            motion = series[column]
-            if column == 0:
-                height = motion[0, k] - offset if k == 0 else motion[0, k]
-                damping = law[0] * v[k] + law[1] * direction * total + law[2] * cube
-            else:
-                height = motion[0, k]
-                damping = 0.0
-                for i in range(k + 1):
-                    damping += slope[i] * motion[1, k - i]
-            elastic = c * height
-            normal = elastic + damping
-            bearing = -support * motion[2, k] - damped * motion[3, k]
-            push = 1.0 if column == 0 and k == 0 else 0.0
-            motion[0, k + 1] = part * motion[1, k]
-            motion[1, k + 1] = part * (push + g * elastic - share * normal + bearing)
-            motion[2, k + 1] = part * motion[3, k]
-            motion[3, k + 1] = part * (bearing - two_mu * normal)
-    slope[ORDER] = 0.0
-
-
-@inner
-def _step(series, tolerance, longest):
-    """Return the step at which the last terms of all series reach the tolerance."""
-    step = longest
-    for column in range(SIZE + 1):
-        size = 1.0
-        for row in range(SIZE):
-            size = max(size, abs(series[column, row, 0]))
-        for k in range(ORDER - 2, ORDER + 1):
-            last = 0.0
-            for row in range(SIZE):
-                last = max(last, abs(series[column, row, k]))
-            if last > 0.0:
-                step = min(step, (tolerance * size / last) ** (1.0 / k))
-    return step
 
 
 @inner
@@ -273,7 +213,7 @@ def propagate(
         Bounds of a step and of its relative error.
     state : ndarray, shape (4,)
         y, v, b, b'.
-    jacobian : ndarray, shape (4, 4)
+    jacobian : ndarray, shape (4, DEVIATIONS)
     events : ndarray, shape (room, EVENT_SIZE)
     samples : ndarray, shape (n, 4)
         Filled with y, v, y'' and the regime at `per_period` times in a mesh period.
@@ -286,8 +226,10 @@ def propagate(
     least_force : float
         Least force between flanks that touch; infinity if none do.
     """
-    series = np.empty((SIZE + 1, SIZE, ORDER + 1))
-    slope, square = np.zeros(ORDER + 1), np.zeros(ORDER + 1)
+    motion = np.empty((SIZE, ORDER + 1))
+    deviations = np.empty((ORDER + 1, SIZE * DEVIATIONS))
+    slope, square, push = np.zeros(ORDER + 1), np.zeros(ORDER + 1), np.zeros(DEVIATIONS)
+    heights, speeds = np.empty(FORCE_PLACES), np.empty(FORCE_PLACES)
     front = np.zeros(SIZE)
     front[0] = 1.0
     regime = CONTACT_LOSS
@@ -328,48 +270,43 @@ def propagate(
             rates = vector_field(state, np.sign(state[1]), c, offset, g, law, bearings)
             direction = _direction(state, rates)
             at_rest = abs(state[1]) <= _REST and abs(rates[1]) <= _REST
-            for row in range(SIZE):
-                series[0, row, 0] = state[row]
-                for column in range(SIZE):
-                    series[column + 1, row, 0] = jacobian[row, column]
-            _expand(series, slope, square, direction, c, offset, g, law, bearings)
-            step = min(_step(series, tolerance, longest), length - since)
+            motion[:, 0] = state
+            deviations[0] = jacobian.reshape(SIZE * DEVIATIONS)
+            expand(motion, deviations, slope, square, push, direction, c, offset, g, law, bearings)
+            step = min(longest_step(motion, deviations, tolerance, longest), length - since)
             kind = -1
             # Up to the first extremum y is monotone, so its value there shows whether it has
             # passed the level ahead.
-            turn = np.inf if at_rest else first_root(series[0, 1], step)
+            turn = np.inf if at_rest else first_root(motion[1], step)
             if turn < step:
                 step, kind = turn, TURN
             level = _level_ahead(regime, direction, backlash)
-            if not at_rest and direction * (value_and_slope(series[0, 0], step)[0] - level) > 0.0:
-                series[0, 0, 0] -= level
-                step, kind = root_between(series[0, 0], 0.0, step), CROSSING
-                series[0, 0, 0] += level
+            if not at_rest and direction * (value_and_slope(motion[0], step)[0] - level) > 0.0:
+                motion[0, 0] -= level
+                step, kind = root_between(motion[0], 0.0, step), CROSSING
+                motion[0, 0] += level
             while n_samples < len(samples):
                 s = n_samples * spacing - begun - since
                 if s >= step - _SAMPLE_EDGE * spacing:
                     break
                 s = max(s, 0.0)
-                samples[n_samples, 0] = value_and_slope(series[0, 0], s)[0]
-                velocity, acceleration = value_and_slope(series[0, 1], s)
+                samples[n_samples, 0] = value_and_slope(motion[0], s)[0]
+                velocity, acceleration = value_and_slope(motion[1], s)
                 samples[n_samples, 1], samples[n_samples, 2] = velocity, acceleration
                 samples[n_samples, 3] = regime
                 n_samples += 1
             if regime != CONTACT_LOSS:
-                for place in range(_FORCE_PLACES + 1):
-                    s = step * place / _FORCE_PLACES
-                    y = value_and_slope(series[0, 0], s)[0]
-                    v = value_and_slope(series[0, 1], s)[0]
-                    damper = (law[0] + (law[1] * direction + law[2] * v) * v) * v
-                    least_force = min(least_force, regime * (c * (y - offset) + damper))
+                least = least_force_in(
+                    motion, step, direction, c, offset, law, regime, heights, speeds
+                )
+                least_force = min(least_force, least)
             total = 0.0
             for k in range(ORDER, -1, -1):
                 total = total * step + slope[k] / (k + 1.0)
             damping += total * step
             for row in range(SIZE):
-                state[row] = value_and_slope(series[0, row], step)[0]
-                for column in range(SIZE):
-                    jacobian[row, column] = value_and_slope(series[column + 1, row], step)[0]
+                state[row] = value_and_slope(motion[row], step)[0]
+            write_deviations(deviations, step, jacobian)
             since = length if kind == -1 and step == length - since else since + step
             if kind == -1:
                 continue
@@ -393,4 +330,6 @@ def propagate(
             event[REGIME], event[SEGMENT] = regime, number
             n_events += 1
         begun += length
+        rates = vector_field(state, np.sign(state[1]), c, offset, g, law, bearings)
+        jacobian[:, SIZE] += length * rates
     return COMPLETE, n_events, damping, least_force
