@@ -27,8 +27,8 @@ def draw_response(resonance: xr.Dataset) -> Figure:
     Returns
     -------
     Figure
-        A panel for each letter of Tab. 1, with the symbols of Fig. 2. A variant with a multiple of the
-        damping has the symbol of the variant itself.
+        A panel for each letter of Tab. 1, with the symbols of Fig. 2. A variant with a multiple of
+        the damping has the symbol of the variant itself.
     """
     letters = list(dict.fromkeys(resonance["letter"].values.tolist()))
     figure, panels = _panels(letters)
