@@ -186,10 +186,15 @@ def _named(places: Places, faults: Mapping[str, str]) -> str:
 
 @cache
 def _commands() -> dict[str, str]:
-    """Return the shell command of each stage, as the rules state it."""
+    """Return the shell commands of each stage, as the rules state them."""
     text = "".join(file.read_text(encoding="utf-8") for file in sorted(RULES.glob("*.smk")))
     commands = re.findall(r"^ +shell:\n((?: +[\"'].*\n)+)", text, re.MULTILINE)
-    return {name: command for command in commands for name in _RUNS.findall(command)}
+    found: dict[str, str] = {}
+    for command in commands:
+        for name in _RUNS.findall(command):
+            # `report` has a rule for each kind of study.
+            found[name] = found.get(name, "") + command
+    return found
 
 
 _RUNS = re.compile(r"gearmesh\.pipeline (\w+) ")
