@@ -145,7 +145,8 @@ def test_the_command_of_a_rule_is_part_of_its_job(place, plan, rules, old, new, 
     path.write_text(path.read_text().replace(old, new))
     pipeline._commands.cache_clear()
     provenance._file_digest.cache_clear()
-    assert {job[0] for job in JOBS if plan.made_of(*job) != before[job[0]]} == expected
+    edited = Plan(plan.study)
+    assert {job[0] for job in JOBS if edited.made_of(*job) != before[job[0]]} == expected
 
 
 def test_jobs_of_one_stage_are_made_of_different_things(plan):
