@@ -76,6 +76,8 @@ def shown(pair: Pair) -> list[Shown]:
         if control.scale:
             factor, unit = float(getattr(pair, control.scale)), _SYMBOLS[control.scale]
         value = getattr(pair, control.name)
+        if isinstance(value, tuple):  # the wheels differ, and the page does not compute such pairs
+            continue
         # Only the initial displacement may be open: static equilibrium, which is y_st.
         value = factor if value is None else value
         least, greatest = (float(stated[end]) / factor for end in ("low", "high"))
