@@ -25,7 +25,7 @@ TARGETS = {
     "layout": (["data/casefile.py", "data/manifest.py", "data/paths.py"], ["tests/data"]),
     "reruns": (
         ["pipeline/plan.py", "data/provenance.py", "pipeline/inputs.py"],
-        ["tests/pipeline"],
+        ["tests/pipeline", "tests/study/test_provenance.py"],
     ),
 }
 """Files below src/gearmesh, and the tests that should notice a change in them."""

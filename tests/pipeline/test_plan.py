@@ -7,7 +7,7 @@ from dataclasses import replace
 import pytest
 from project import COPIED, ROOT, TINY
 
-from gearmesh.data import manifest, provenance
+from gearmesh.data import manifest, paths, provenance
 from gearmesh.errors import InputError
 from gearmesh.pipeline import plan as pipeline
 from gearmesh.pipeline.inputs import inputs
@@ -115,6 +115,7 @@ EDITS = {
     "title: Another\n": {"datasets", "report", "crate"},
     "case_files: false\n": {"cases", "report", "crate"},
     "tolerance: 1e-9\n": {"cases", "datasets", "thresholds", "report", "crate"},
+    "nu: {start: 0.6, stop: 1.2, step: 0.3}\n": {"cases", "datasets", "report", "crate"},
     "# a comment\n": {"crate"},
 }
 
@@ -145,11 +146,21 @@ def test_the_command_of_a_rule_is_part_of_its_job(place, plan, rules, old, new, 
     path.write_text(path.read_text().replace(old, new))
     pipeline._commands.cache_clear()
     provenance._file_digest.cache_clear()
-    assert {job[0] for job in JOBS if plan.made_of(*job) != before[job[0]]} == expected
+    edited = Plan(plan.study)
+    assert {job[0] for job in JOBS if edited.made_of(*job) != before[job[0]]} == expected
 
 
 def test_jobs_of_one_stage_are_made_of_different_things(plan):
     assert plan.made_of("cases", "a") != plan.made_of("cases", "c")
+
+
+def test_a_figure_depends_on_its_own_checks_only(plan):
+    files, unused = pipeline._files("figure", "fig2")
+    own, other = (provenance.module(f"reproduction/claims/{name}") for name in ("fig2", "fig3"))
+    assert paths.notebook("fig2") in files
+    assert other in unused and own not in unused
+    files, unused = pipeline._files("printed")
+    assert files == [] and other in unused
 
 
 def test_the_inputs_of_a_study_are_named(place, plan):
