@@ -110,8 +110,10 @@ def _symbol(match: re.Match[str]) -> str:
     return f'<span style="white-space: nowrap">{letter}-{LOOKS[where].symbol}{multiple}</span>'
 
 
-def quantity(value: float | tuple[Any, ...], unit: str) -> str:
+def quantity(value: float | str | tuple[Any, ...], unit: str) -> str:
     """Write the value of a parameter with its unit."""
+    if isinstance(value, str):
+        return value
     if isinstance(value, tuple):
         harmonics = [f"({number(c[0])}, {number(c[1])})" for c in value if isinstance(c, tuple)]
         if harmonics:

@@ -106,6 +106,10 @@ class Response:
         Shares of the kept time with -s < y < 0 and with y <= -s.
     n_contact_losses : int or None
         Number of times that contact is lost in the kept revolutions.
+    least_contact_force : float
+        Least force that presses touching flanks in the kept revolutions, in F_st; negative if they
+        pull, infinity if they never touch. The reduced solver measures it on the samples, and
+        leaves it not a number without them.
     turning_points_per_period : float
         Mean number of extrema in a kept mesh period.
     y_max_error, y_min_error : float
@@ -139,6 +143,7 @@ class Response:
     contact_loss_fraction: float = np.nan
     inverse_mesh_fraction: float = np.nan
     n_contact_losses: int | None = None
+    least_contact_force: float = np.nan
     turning_points_per_period: float = np.nan
     y_max_error: float = np.nan
     y_min_error: float = np.nan
@@ -146,6 +151,13 @@ class Response:
     rotation_drift: float = np.nan
     final_state: State | None = None
     samples: Samples | None = None
+
+
+def least_of(samples: Samples) -> float:
+    """Return the least force that presses touching flanks at the samples."""
+    touching = samples.regime != 0
+    pressing = samples.regime[touching] * samples.force_normal[touching]
+    return float(np.min(pressing, initial=np.inf))
 
 
 @dataclass(slots=True)
@@ -166,6 +178,7 @@ def assemble(
     tolerance: float,
     samples: Any,
     rotation_drift: float = np.nan,
+    least_contact_force: float = np.nan,
 ) -> Response:
     """Return the response that a compiled solver has measured.
 
@@ -183,6 +196,8 @@ def assemble(
     samples : Samples or None
     rotation_drift : float
         In rad.
+    least_contact_force : float
+        In F_st; if it is not a number, it is measured on the samples.
     """
     response = Response(
         STATUSES[summary["status"]], problem.period, problem.nu, int(summary["steps"])
@@ -195,6 +210,9 @@ def assemble(
     response.rotation_drift = rotation_drift
     if problem.kept_periods:
         _measure(response, problem, summary, extrema, samples)
+        response.least_contact_force = least_contact_force
+        if samples is not None and np.isnan(least_contact_force):
+            response.least_contact_force = least_of(samples)
     if companion is not None:
         _estimate(response, summary, strobes, companion, SENSITIVE * tolerance)
     return response

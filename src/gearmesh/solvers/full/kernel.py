@@ -334,7 +334,7 @@ def run(
         share, event = _find_event(case, segment, mode, state, step, series, rest, scaled, table)
         duration = share * step
         if mode.period >= case.first_kept:
-            expand_outputs(case, mode, tape, variant, series)
+            expand_outputs(case, mode, tape, variant, per_period > 0, series)
             measure(case, mode, series, duration, summary)
             if per_period:
                 until = segment.end if event == SEGMENT_ENDED else mode.time + duration

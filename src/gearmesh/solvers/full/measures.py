@@ -17,7 +17,7 @@ from gearmesh.solvers.full.tape import (
 )
 from gearmesh.solvers.response import MAXIMUM, MEASURED, MINIMUM
 
-SUMMARY = np.dtype([*MEASURED, ("samples", np.int64)])
+SUMMARY = np.dtype([*MEASURED, ("least_contact_force", np.float64), ("samples", np.int64)])
 """What is measured on a run, and how many samples were taken."""
 
 SAMPLE = np.dtype(
@@ -29,6 +29,9 @@ SAMPLE = np.dtype(
         )
     ]
 )
+
+_GRID = 8
+_MOST_ITERATIONS = 20
 
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(16)
 _NODES = 0.5 * (_NODES + 1.0)
@@ -84,7 +87,7 @@ def sample(case, mode, series, until, samples, per_period, summary):
 
 @inner
 def measure(case, mode, series, duration, summary):
-    """Add the step to the sums over the kept revolutions."""
+    """Add the step to the sums over the kept revolutions, and find the least contact force."""
     total = 0.0
     for i in range(_NODES.size):
         y = evaluate(series[Y], case.order, duration * _NODES[i])
@@ -94,3 +97,34 @@ def measure(case, mode, series, duration, summary):
         summary.loss_time += duration
     elif mode.regime == INVERSE_MESH:
         summary.inverse_time += duration
+    if mode.regime != CONTACT_LOSS:
+        least = _least(series[NORMAL], case.order - 2, duration, mode.regime)
+        summary.least_contact_force = min(summary.least_contact_force, least)
+
+
+@inner
+def _least(row, degree, duration, sign):
+    """Return the least value of `sign` times a series in <0; duration>.
+
+    Where it falls towards a point and rises again on an even grid, Newton's method follows.
+    """
+    least = np.inf
+    place = 0.0
+    for i in range(_GRID + 1):
+        at = duration * i / _GRID
+        value = sign * evaluate(row, degree, at)
+        if value < least:
+            least, place = value, at
+    for _ in range(_MOST_ITERATIONS):
+        slope = bend = 0.0
+        for k in range(degree, 0, -1):
+            bend = bend * place + slope
+            slope = slope * place + k * row[k]
+        if sign * bend <= 0.0:
+            return least
+        place = min(max(place - slope / bend, 0.0), duration)
+        value = sign * evaluate(row, degree, place)
+        if not value < least:
+            return least
+        least = value
+    return least

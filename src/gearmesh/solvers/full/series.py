@@ -12,16 +12,16 @@ from gearmesh.solvers.full.roots import MAX_DEGREE
 from gearmesh.solvers.full.tape import (
     ACCELERATE,
     BRACKET,
+    CONSTANT,
     CONTACT,
-    DIRECTION,
     GAP,
+    MOVES,
     N_BRANCHES,
     PRODUCT,
-    RATE,
     ROOT,
     ROUND,
+    SIGNED,
     SIGNS,
-    SUM,
     TIME,
     WAVE,
     V,
@@ -120,12 +120,13 @@ def level(case, regime, direction):
 
 
 @inner
-def _carry_out(tape, forces, end, motion, motion_end, ahead, start, stop, series):
+def _carry_out(mode, tape, forces, end, motion, motion_end, ahead, start, stop, series):
     """Carry out two ranges of operations for the coefficients of order `start` to before `stop`.
 
     The second range, from `motion` on, follows `ahead` orders ahead of the first.
     """
     operations, numbers, rows, factors, _ = tape
+    direction = mode.direction
     for k_forces in range(start, stop):
         for part in range(2):
             first, last, k = (forces, end, k_forces)
@@ -134,26 +135,24 @@ def _carry_out(tape, forces, end, motion, motion_end, ahead, start, stop, series
             for i in range(first, last):
                 code, out = operations[i, 0], operations[i, 1]
                 one, two = operations[i, 2], operations[i, 3]
-                if code == SUM:
-                    total = numbers[i, 0] if k == 0 else 0.0
+                total = 0.0
+                if code <= ACCELERATE:
+                    if k == 0:
+                        total = numbers[i, 0]
                     for j in range(one, two):
                         total += factors[j] * series[rows[j], k]
-                    series[out, k] = total
-                elif code == ACCELERATE:
-                    total = numbers[i, 0] if k == 0 else 0.0
-                    for j in range(one, two):
-                        total += factors[j] * series[rows[j], k]
-                    total *= INVERSE[k + 1]
-                    series[out + SIX, k + 1] = total
-                    series[out, k + 2] = total * INVERSE[k + 2]
-                elif code == PRODUCT:
-                    total = 0.0
+                    if code == ACCELERATE:
+                        total *= INVERSE[k + 1]
+                        series[out + SIX, k + 1] = total
+                        series[out, k + 2] = total * INVERSE[k + 2]
+                    else:
+                        series[out, k] = total
+                        if code == MOVES and k > 0:
+                            series[out + ONE, k - 1] = k * total
+                elif code <= SIGNED:
                     for j in range(min(k, operations[i, 4]) + 1):
                         total += series[one, j] * series[two, k - j]
-                    series[out, k] = total
-                elif code == RATE:
-                    if k > 0:
-                        series[out, k - 1] = k * series[one, k]
+                    series[out, k] = total if code == PRODUCT else total * direction
                 elif code == WAVE:
                     if k == 0:
                         angle = numbers[i, 1] * series[TIME, 0] + numbers[i, 0]
@@ -220,11 +219,12 @@ def begin(case, mode, state, tape, variant, series):
     periods = case.start_period + mode.period + case.initial_phase
     series[TIME, 0] = periods + mode.time / case.period
     series[TIME, 1] = 1.0 / case.period
+    series[CONSTANT, 0] = 1.0
     for i in range(case.coordinates):
         series[i, 0], series[i, 1] = state[i], state[6 + i]
         series[6 + i, 0] = state[6 + i]
     motion, forces, _ = _places(case, mode, tape, variant)
-    _carry_out(tape, 0, 0, motion, forces, 0, 0, 2, series)
+    _carry_out(mode, tape, 0, 0, motion, forces, 0, 0, 2, series)
     if mode.on_level:
         series[Y, 0] = mode.level
     if mode.turns:
@@ -239,16 +239,15 @@ def begin(case, mode, state, tape, variant, series):
 def expand(case, mode, tape, variant, series, order):
     """Fill the series up to `order`, from what `begin` wrote."""
     motion, forces, outputs = _places(case, mode, tape, variant)
-    series[DIRECTION, 0] = mode.direction
     series[SIGNS, 0] = mode.run_out_sign * mode.slip_sign
-    _carry_out(tape, forces, outputs, motion, forces, 2, 0, order - 1, series)
+    _carry_out(mode, tape, forces, outputs, motion, forces, 2, 0, order - 1, series)
     if mode.on_force:
         series[CONTACT, 0] = 0.0
 
 
 @inner
-def expand_outputs(case, mode, tape, variant, series):
-    """Fill the series of the forces that are measured, once the motion is known."""
+def expand_outputs(case, mode, tape, variant, sampled, series):
+    """Fill the series of the normal force and, if wanted, of all that is sampled."""
     branch = branch_of(case, mode, variant)
-    outputs, end = tape[4][branch, 2], tape[4][branch, 3]
-    _carry_out(tape, outputs, end, 0, 0, 0, 0, case.order - 1, series)
+    first, last = tape[4][branch, 2], tape[4][branch, 4 if sampled else 3]
+    _carry_out(mode, tape, first, last, 0, 0, 0, 0, case.order - 1, series)

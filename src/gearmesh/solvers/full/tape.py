@@ -23,28 +23,34 @@ from gearmesh.solvers.full.coordinates import embedding, signs_act
 from gearmesh.solvers.full.roots import MAX_DEGREE
 
 COORDINATES, RATES = 0, 6
-TIME, DIRECTION, SIGNS = range(12, 15)
+TIME, CONSTANT, SIGNS = range(12, 15)
 Y, V, SWING, BRACKET, GAP, CONTACT, ELASTIC, FRICTION, STIFFNESS, NORMAL = range(15, 25)
 TRANSMISSION, BEARING_3, BEARING_2 = range(25, 28)
 FIRST_FREE = 28
 """Rows of the table of series.
 
-The first six are the coordinates, the next six their rates. TIME counts mesh periods. DIRECTION is
-the sign of y', SIGNS the product of both signs of eq. (6). V and BRACKET are the rates of Y and
+The first six are the coordinates, the next six their rates. TIME counts mesh periods. CONSTANT
+is 1, SIGNS the product of both signs of eq. (6). V and BRACKET are the rates of Y and
 SWING. GAP is y + s(t). CONTACT and NORMAL are the force of flanks that touch, and what of it acts
 (`gearmesh.model.motion.Forces`). TRANSMISSION is the transmission error, BEARING_3 and BEARING_2
 are what the bodies exert on their bearings along the mesh line.
 """
 
-SUM, PRODUCT, WAVE, SINE, ROOT, ROUND, RATE, ACCELERATE = range(8)
-"""Operations. WAVE is the sine and cosine of an angle that is linear in time."""
+SUM, MOVES, ACCELERATE, PRODUCT, SIGNED, WAVE, SINE, ROOT, ROUND = range(9)
+"""Operations.
+
+MOVES is a sum whose rate is wanted too, in the next row. SIGNED is a product with the sign of y'.
+WAVE is the sine and cosine of an angle that is linear in time.
+"""
 
 CODE, OUT, FIRST, SECOND, DEGREE = range(5)
 """Columns of an operation: what it does, the row that it writes, and its operands.
 
-The operands are rows, or for SUM and ACCELERATE the ends of a range of summands. The degree is that
-in time of the first operand of PRODUCT.
+The operands are rows, or for sums the ends of a range of summands. The degree is that in time of
+the first operand of a product.
 """
+
+_SUMS = (SUM, MOVES, ACCELERATE)
 
 N_BRANCHES = 12
 """Branches of a segment: three regimes, sticking or not, parted or not (`branch_of`)."""
@@ -62,9 +68,9 @@ class Tape(NamedTuple):
     rows : ndarray of int, shape (m,)
     factors : ndarray, shape (m,)
         The summands: rows and their factors.
-    branches : ndarray of int, shape (`N_BRANCHES` * segments, 4)
-        Where the operations of a branch begin: of y, of the accelerations, of the measured forces;
-        and where they end. Branches that cannot occur are zero.
+    branches : ndarray of int, shape (`N_BRANCHES` * segments, 5)
+        Where the operations of a branch begin: of y, of the accelerations, of the normal force, of
+        what else is sampled; and where they end. Branches that cannot occur are zero.
     """
 
     operations: np.ndarray
@@ -132,7 +138,7 @@ class _Traced:
     def __abs__(self) -> "_Traced":
         if self.terms.keys() != {V} or self.constant != 0.0:
             raise TypeError("only the sign of y' is known: abs takes nothing else")
-        return _Traced(self.trace, {DIRECTION: 1.0}) * self
+        return self.trace.modulus(V) * abs(self.terms[V])
 
     def __round__(self) -> "_Traced":
         return self.trace.single(ROUND, self)
@@ -152,8 +158,9 @@ class _Trace:
 
     def __init__(self) -> None:
         self.operations: list[tuple[int, int, tuple[Any, ...]]] = []
-        self.degrees = {TIME: 1, DIRECTION: 0, SIGNS: 0}
+        self.degrees = {TIME: 1, CONSTANT: 0, SIGNS: 0}
         self._known: dict[tuple[Any, ...], int] = {}
+        self._moduli: dict[int, int] = {}
         self._free = FIRST_FREE
 
     def row(self, row: int) -> _Traced:
@@ -184,11 +191,21 @@ class _Trace:
         if not a.terms or not b.terms:
             return rest
         (row_a, factor_a), (row_b, factor_b) = self._row_of(a.terms), self._row_of(b.terms)
-        low, high = sorted((row_a, row_b), key=lambda row: (self.degrees.get(row, MAX_DEGREE), row))
+        code = PRODUCT
+        for row, other in ((row_a, row_b), (row_b, row_a)):
+            if row in self._moduli:
+                code, row_a, row_b = SIGNED, self._moduli[row], other
+                break
+        low, high = sorted((row_a, row_b), key=lambda row: (self._degree([row]), row))
         degree = min(MAX_DEGREE, self._degree([low]) + self._degree([high]))
-        operands = (low, high, self.degrees.get(low, MAX_DEGREE))
-        found = self._result(PRODUCT, operands, degree)
+        found = self._result(code, (low, high, self._degree([low])), degree)
         return rest + _Traced(self, {found: factor_a * factor_b})
+
+    def modulus(self, row: int) -> _Traced:
+        """Return the absolute value of a number with the sign of y'."""
+        found = self._result(SIGNED, (CONSTANT, row, 0), MAX_DEGREE)
+        self._moduli[found] = row
+        return self.row(found)
 
     def _row_exactly(self, value: _Traced) -> int:
         """Return the row of a number."""
@@ -216,11 +233,11 @@ class _Trace:
             out = self._result(SINE, (self._row_exactly(angle),), MAX_DEGREE, rows=2)
         return self.row(out), self.row(out + 1)
 
-    def name(self, row: int, value: Any) -> _Traced:
-        """Give a number, a float too, a row of its own."""
+    def name(self, row: int, value: Any, code: int = SUM) -> _Traced:
+        """Give a number, a float too, a row of its own; MOVES gives its rate the next row."""
         terms = value.terms if isinstance(value, _Traced) else {}
         constant = value.constant if isinstance(value, _Traced) else float(value)
-        self.operations.append((SUM, row, (tuple(sorted(terms.items())), constant)))
+        self.operations.append((code, row, (tuple(sorted(terms.items())), constant)))
         return self.row(row)
 
 
@@ -252,7 +269,7 @@ def _recorded(problem: Problem, segments: tuple[float, ...]) -> Tape:
     branches: list[tuple[int, ...]] = []
     sticks = (False, True) if signs_act(problem) else (False,)
     for segment in segments:
-        found = [(0,) * 4] * N_BRANCHES
+        found = [(0,) * 5] * N_BRANCHES
         for regime in (CONTACT_LOSS, NORMAL_MESH, INVERSE_MESH):
             can_part = problem.terms.non_adhesive and regime != CONTACT_LOSS
             for stick in sticks:
@@ -277,7 +294,7 @@ def _recorded(problem: Problem, segments: tuple[float, ...]) -> Tape:
 def _record(
     problem: Problem, mode: motion.Mode, columns: np.ndarray, signed: bool
 ) -> list[list[tuple[int, int, tuple[Any, ...]]]]:
-    """Return the operations of one branch in three parts: motion, forces and outputs."""
+    """Return the operations of a branch in four parts, which `Tape.branches` lists."""
     trace = _Trace()
     time = trace.row(TIME)
     n = columns.shape[1]
@@ -290,11 +307,9 @@ def _record(
         ]
         for first in (COORDINATES, RATES)
     )
-    y = trace.name(Y, motion.displacement(problem, time, q))
-    trace.operations.append((RATE, V, (Y,)))
+    y = trace.name(Y, motion.displacement(problem, time, q), MOVES)
     if signed:
-        trace.name(SWING, motion.run_out_integral(problem, time, q))
-        trace.operations.append((RATE, BRACKET, (SWING,)))
+        trace.name(SWING, motion.run_out_integral(problem, time, q), MOVES)
     if problem.terms.backlash_harmonics:
         trace.name(GAP, y + backlash(problem, time))
     moved = len(trace.operations)
@@ -328,11 +343,13 @@ def _record(
     trace.name(BEARING_2, bearing_2)
     everything = trace.operations
     needed = _needed(everything[:forced], wanted)
-    outputs = _needed(everything, range(STIFFNESS, FIRST_FREE)) | _needed(everything, [FRICTION])
+    pressing = _needed(everything, [NORMAL]) - needed
+    outputs = _needed(everything, [*range(STIFFNESS, FIRST_FREE), FRICTION]) - needed - pressing
     return [
         [everything[i] for i in sorted(needed) if i < moved],
         [everything[i] for i in sorted(needed) if i >= moved],
-        [everything[i] for i in sorted(outputs - needed) if i >= moved],
+        [everything[i] for i in sorted(pressing)],
+        [everything[i] for i in sorted(outputs)],
     ]
 
 
@@ -344,7 +361,7 @@ def _needed(operations: list[tuple[int, int, tuple[Any, ...]]], rows: Iterable[i
         second = code in (WAVE, SINE) and out + 1 in wanted
         if code == ACCELERATE or out in wanted or second:
             found.add(i)
-            if code in (SUM, ACCELERATE):
+            if code in _SUMS:
                 wanted.update(row for row, _ in operands[0])
             elif code != WAVE:
                 wanted.update(operands[:2])
@@ -355,7 +372,7 @@ def _encoded(
     operation: tuple[int, int, tuple[Any, ...]], terms: list[tuple[int, float]]
 ) -> tuple[Any, ...]:
     code, out, operands = operation
-    if code in (SUM, ACCELERATE):
+    if code in _SUMS:
         first = len(terms)
         terms += operands[0]
         return code, out, first, len(terms), 0, operands[1], 0.0
