@@ -33,7 +33,7 @@ TARGETS = {
     ),
     "layout": (
         ["data/casefile.py", "data/manifest.py", "data/paths.py"],
-        ["tests/data/test_casefile.py tests/data/test_manifest.py"],
+        ["tests/data/test_paths.py tests/data/test_casefile.py tests/data/test_manifest.py"],
     ),
     "reruns": (
         ["pipeline/plan.py", "data/provenance.py", "pipeline/inputs.py"],
