@@ -110,7 +110,7 @@ def _symbol(match: re.Match[str]) -> str:
     return f'<span style="white-space: nowrap">{letter}-{LOOKS[where].symbol}{multiple}</span>'
 
 
-def quantity(value: float | tuple[Any, ...], unit: str) -> str:
+def quantity(value: Any, unit: str) -> str:
     """Write the value of a parameter with its unit."""
     if isinstance(value, tuple):
         harmonics = [f"({number(c[0])}, {number(c[1])})" for c in value if isinstance(c, tuple)]
@@ -118,6 +118,10 @@ def quantity(value: float | tuple[Any, ...], unit: str) -> str:
             return f"{', '.join(harmonics)} {unit}"
         numbers = dict.fromkeys(item for item in value if not isinstance(item, tuple))
         return ", ".join(quantity(item, unit) for item in numbers) or "none"
+    if isinstance(value, bool):
+        return "yes" if value else "no"
+    if not isinstance(value, int | float):  # a word, a harmonic or the factor of a tooth
+        return str(value)
     if unit == "rad":
         return f"{number(math.degrees(value))}°"
     return number(value) + ("" if unit == "1" else f" {unit.replace('*', ' ')}")
