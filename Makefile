@@ -25,7 +25,7 @@ SNAKEMAKE := $(BIN)/python -I -m snakemake $(if $(CORES),--cores $(CORES))
 UV_COMPILE := uv pip compile --quiet --universal --python-version 3.11 --fork-strategy fewest \
 	--generate-hashes --no-annotate --no-header --no-emit-index-url
 
-.PHONY: help reproduce test test-fast verify bench lint docs identify lock clean always
+.PHONY: help reproduce test test-fast verify mutants bench lint docs identify lock clean always
 .DELETE_ON_ERROR:
 
 help: ## show this list
@@ -62,6 +62,9 @@ docs: $(DOCS_STAMP) ## the documentation site, in docs/_build/html
 	rm -rf docs/_build docs/reference/generated
 	$(BIN)/sphinx-build --fail-on-warning --keep-going --quiet -b html docs docs/_build/html
 	$(BIN)/python .ci/lint_docs.py docs/_build/html
+
+mutants: $(STAMP) ## small changes of the code that the tests should notice (an hour or more)
+	$(BIN)/python .ci/mutants.py
 
 identify: $(STAMP) ## infer the open parameters from the claims
 	$(SNAKEMAKE) identify

@@ -2,10 +2,11 @@
 
 import json
 import sys
+import tempfile
 from dataclasses import asdict, dataclass
 from pathlib import Path
 
-from benchmarks import machine, start, table, work_precision  # machine comes first
+from benchmarks import against, machine, start, table, work_precision  # before NumPy
 from benchmarks.cases import SWEEP, singles, sweeps
 from benchmarks.measure import AIM, SHARE, Accuracy, Contest, measured, sparse
 from benchmarks.peers import OURS, OURS_WITH_LESS, PEERS, Solve, Solver
@@ -28,6 +29,8 @@ class Entry:
 
 def main() -> int:
     """Run everything."""
+    with tempfile.TemporaryDirectory(prefix="against-") as folder:
+        print(against.table(Path(folder), list(against.ROWS)))
     machine.keep_one_core()
     try:
         from benchmarks.reference import SENSITIVE, references

@@ -1,6 +1,7 @@
 """The command as people run it: exit statuses, one line for bad input, no traceback."""
 
 import os
+import resource
 import shutil
 import subprocess
 import sys
@@ -150,6 +151,25 @@ def test_a_sensitive_run_says_so(gearmesh, tmp_path):
         *("simulate", "--variant", "a-conservative", "--nu", "0.65", "-o", tmp_path / "a.nc"),
     )
     assert "sensitive: this motion amplifies small errors" in run.stdout
+
+
+def test_a_run_that_needs_too_much_memory_is_one_line(root, tmp_path):
+    """The samples of 10,000 revolutions of wheels with 1,000 teeth would fill 20 GB."""
+    sizes = ("teeth=1000", "revolutions=10000", "kept_revolutions=10000")
+    settings = [argument for size in sizes for argument in ("--set", size)]
+    case = ["--variant", "c-material", "--nu", "0.66", "-o", str(tmp_path / "run.nc")]
+    run = subprocess.run(
+        [sys.executable, "-m", "gearmesh", "simulate", *case, *settings],
+        cwd=root,
+        capture_output=True,
+        text=True,
+        timeout=200,
+        preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_AS, (6 * 2**30, 6 * 2**30)),
+    )
+    assert run.returncode != 0
+    assert "not enough memory" in run.stderr
+    assert "Traceback" not in run.stderr
+    assert not (tmp_path / "run.nc").exists()
 
 
 def test_settings_of_a_run_from_the_command_line(gearmesh, tmp_path):

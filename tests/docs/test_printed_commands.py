@@ -33,6 +33,9 @@ SMOKE = "config/smoke.yaml"
 ELSEWHERE = {
     "make reproduce": "tests/workflow/test_workflow.py runs the same targets on a small study",
     "make test": "runs this test",
+    "make test-fast": "is a part of make test",
+    "make verify": "tests/verification runs it on single cases",
+    "make mutants": "takes hours, and runs the tests again and again",
     "make lint": ".ci/run runs it",
     "make docs": ".ci/run runs it",
     "make identify": "tests/identification/test_samples.py runs a small design",

@@ -11,6 +11,7 @@ import nbformat
 import pytest
 from project import ROOT, Project
 
+from gearmesh.pipeline import notebooks
 from gearmesh.pipeline.notebooks import run_notebook
 
 
@@ -156,7 +157,8 @@ def test_a_foreign_kernel_of_the_same_name_is_not_used(notebook, tmp_path, monke
 
 def test_a_notebook_needs_no_loopback_interface(notebook, tmp_path):
     code = (
-        "import sys\nfrom pathlib import Path\nfrom gearmesh.pipeline.notebooks import run_notebook\n"
+        "import sys\nfrom pathlib import Path\n"
+        "from gearmesh.pipeline.notebooks import run_notebook\n"
         "run_notebook(*map(Path, sys.argv[1:3]), {}, Path(sys.argv[3]))"
     )
     alone = ["unshare", "--net", "--map-root-user"]
@@ -168,3 +170,8 @@ def test_a_notebook_needs_no_loopback_interface(notebook, tmp_path):
     subprocess.run(command, env=environment, check=True, timeout=100)
     [cell] = nbformat.read(tmp_path / "out.ipynb", as_version=4).cells
     assert cell.outputs[0].text.strip() == sys.executable
+
+
+def test_a_long_temporary_folder_makes_kernels_use_the_network():
+    assert notebooks._local("x" * 60)["KernelManager"]["transport"] == "ipc"
+    assert notebooks._local("x" * 100) == {}

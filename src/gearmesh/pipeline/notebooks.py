@@ -31,6 +31,9 @@ ATTEMPTS = 3
 
 KERNEL = "python3"
 
+LONGEST = 90
+"""Length of a folder in which sockets may be; a name of a socket has 104 characters at most."""
+
 
 def run_notebook(
     notebook: Path, executed: Path, parameters: Mapping[str, Path | str], scratch: Path
@@ -82,9 +85,11 @@ def run_notebook(
 def _local(folder: str) -> Config:
     """Return settings for sockets in a folder: they need neither a network nor free ports.
 
-    The system limits the length of their names to about 100 characters, so the folder is one of the
-    system's temporary folders, whose names are short.
+    The system limits the length of their names, so the folder is one of the system's temporary
+    folders, whose names are short. Where it is not (TMPDIR may be long), kernels use the network.
     """
+    if len(folder) > LONGEST:
+        return Config()
     return Config(KernelManager={"transport": "ipc", "ip": f"{folder}/socket"})
 
 

@@ -186,10 +186,15 @@ def _named(places: Places, faults: Mapping[str, str]) -> str:
 
 @cache
 def _commands() -> dict[str, str]:
-    """Return the shell command of each stage, as the rules state it."""
+    """Return the shell commands of each stage, as the rules state them."""
     text = "".join(file.read_text(encoding="utf-8") for file in sorted(RULES.glob("*.smk")))
     commands = re.findall(r"^ +shell:\n((?: +[\"'].*\n)+)", text, re.MULTILINE)
-    return {name: command for command in commands for name in _RUNS.findall(command)}
+    found: dict[str, str] = {}
+    for command in commands:
+        for name in _RUNS.findall(command):
+            # `report` has a rule for each kind of study.
+            found[name] = found.get(name, "") + command
+    return found
 
 
 _RUNS = re.compile(r"gearmesh\.pipeline (\w+) ")
@@ -359,8 +364,12 @@ def prefix(plan: Plan) -> str:
     """Return what goes before each shell command: where `python` is, and which study runs.
 
     It takes the place of Snakemake's own prefix, so it repeats that a command fails with any part
-    of it: the logs are written through a pipe.
+    of it: the logs are written through a pipe. Jobs run side by side, so the matrix library takes
+    one thread for each. With more, a small matrix takes a hundred times as long.
     """
     folder = shlex.quote(str(Path(sys.executable).parent))
     study = shlex.quote(str(plan.study.path))
-    return f"set -euo pipefail; export PATH={folder}:$PATH STUDY={study}; unset NUMBA_DISABLE_JIT; "
+    return (
+        f"set -euo pipefail; export PATH={folder}:$PATH STUDY={study} OPENBLAS_NUM_THREADS=1; "
+        "unset NUMBA_DISABLE_JIT; "
+    )

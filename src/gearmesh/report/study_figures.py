@@ -6,7 +6,8 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from gearmesh.reproduction.figures import palette
-from gearmesh.reproduction.figures.canvas import WIDTH, shade_regions, styled
+from gearmesh.reproduction.figures.canvas import WIDTH, curve_handle, shade_regions, styled
+from gearmesh.reproduction.figures.fig2 import plot_curve
 from gearmesh.reproduction.figures.orbit import scale
 
 COLUMNS = 2
@@ -26,28 +27,20 @@ def draw_response(resonance: xr.Dataset) -> Figure:
     Returns
     -------
     Figure
-        A panel for each letter of Tab. 1, with the colour and the marker of each variant.
+        A panel for each letter of Tab. 1, with the symbols of Fig. 2. A variant with a multiple of
+        the damping has the symbol of the variant itself.
     """
     letters = list(dict.fromkeys(resonance["letter"].values.tolist()))
     figure, panels = _panels(letters)
     for letter, axes in zip(letters, panels, strict=True):
+        handles = {}
         for name in resonance["variant"].values[resonance["letter"].values == letter]:
             curve = resonance.sel(variant=name)
-            look = palette.LOOKS[str(curve["symbol"].item())]
-            for extreme in ("y_max_rel", "y_min_rel"):
-                axes.plot(
-                    *(curve["nu"], curve[extreme]),
-                    ls="none",
-                    marker=".",
-                    ms=2.4,
-                    mew=0,
-                    rasterized=True,
-                    color=look.colour,
-                    alpha=0.5 if curve["damping_factor"] != 1.0 else 1.0,
-                    label=str(name) if extreme == "y_max_rel" else None,
-                )
+            kind = str(curve["symbol"].item())
+            plot_curve(axes, curve, kind)
+            handles[str(name)] = curve_handle(kind)
         axes.set_title(f"variants {letter}")
-        axes.legend(loc="upper right", markerscale=3.0)
+        axes.legend([*handles.values()], [*handles], loc="best")
         _finish(axes, resonance)
     return figure
 

@@ -1,10 +1,11 @@
-"""Trapping regions: ellipsoids around the points of a stable orbit from which no motion returns.
+"""Trapping regions: ellipsoids around the points of a stable orbit that no motion leaves.
 
 Let M be the Jacobian of the period of an orbit, and rho lie between its largest multiplier and 1.
 The quadratic form V(d) = sum over k of |M^k d|^2 / rho^(2k) then falls by the factor rho^2 in each
 period of the linear map, and near the orbit it falls in the full map too. How far from the orbit
 that holds is tried: motions from the surface of the region have to come as close as the linear map
-says. A run that has entered such a region need not be followed to its end.
+says. This is a check and no proof. A run that has entered such a region need not be followed to
+its end.
 """
 
 import math

@@ -74,9 +74,10 @@ def sweeps(study: Study, places: Places) -> list[Path]:
     from gearmesh.reproduction.mechanisms import sweeps, tables
 
     chosen = _mechanisms(study)
-    swept = sweeps.sweeps(study.pair, chosen.variants)
+    damped = [name for name in chosen.variants if name != "a-conservative"]
+    swept = sweeps.sweeps(study.pair, damped)
     tables.write(places.mechanism("sweeps"), swept, study, "sweeps up and down")
-    mapped = sweeps.design_map(study.pair, chosen.resolution // 2)
+    mapped = sweeps.design_map(study.pair, chosen.resolution // 3 + 1)
     tables.write(places.mechanism("design_map"), mapped, study, "design map")
     return [places.mechanism("sweeps"), places.mechanism("design_map")]
 

@@ -1,8 +1,10 @@
 """The parameters that the explorer can change, and how its sliders show them."""
 
 from dataclasses import dataclass
+from typing import Any
 
 from gearmesh.study.pair import Pair
+from gearmesh.study.schema import of_wheels
 
 
 @dataclass(frozen=True, slots=True)
@@ -66,6 +68,16 @@ class Shown:
     greatest: float
 
 
+def of_one_wheel(pair: Pair) -> dict[str, Any]:
+    """Return all parameters; where the wheels differ, those of wheel 3.
+
+    The solver of the page has equal wheels. It says so to a study that has others.
+    """
+    values = pair.model_dump(mode="json")
+    both = [name for name, stated in Pair.declarations().items() if stated["of_wheels"]]
+    return {**values, **{name: of_wheels(getattr(pair, name))[0] for name in both}}
+
+
 def shown(pair: Pair) -> list[Shown]:
     """Return the controls for the parameters of a pair."""
     declared = Pair.declarations()
@@ -75,9 +87,7 @@ def shown(pair: Pair) -> list[Shown]:
         unit = "" if stated["unit"] == "1" else stated["unit"].replace("*", " ")
         if control.scale:
             factor, unit = float(getattr(pair, control.scale)), _SYMBOLS[control.scale]
-        value = getattr(pair, control.name)
-        if isinstance(value, tuple):  # the wheels differ, and the page does not compute such pairs
-            continue
+        value = of_wheels(getattr(pair, control.name))[0]
         # Only the initial displacement may be open: static equilibrium, which is y_st.
         value = factor if value is None else value
         least, greatest = (float(stated[end]) / factor for end in ("low", "high"))

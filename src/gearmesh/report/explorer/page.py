@@ -78,7 +78,7 @@ def render(
     described = {
         "study": study.name,
         "title": study.title,
-        "pair": pair.model_dump(mode="json"),
+        "pair": controls.of_one_wheel(pair),
         "variants": names,
         "statuses": list(STATUSES),
         "kinds": list(numbers.KINDS),

@@ -61,7 +61,7 @@ def draw(resonance: xr.Dataset) -> Figure:
             note(axes, NOT_IN_STUDY)
             continue
         for name in names:
-            _plot_curve(axes, resonance.sel(variant=name), name.partition("-")[2])
+            plot_curve(axes, resonance.sel(variant=name), name.partition("-")[2])
         _set_ordinate(axes, resonance.sel(variant=names), bool(undamped))
         shade_regions(axes, scales.backlash)
         micrometre_axis(axes, scales.static_deflection, label=axes in grid[:, 1])
@@ -77,7 +77,8 @@ def draw(resonance: xr.Dataset) -> Figure:
     return figure
 
 
-def _plot_curve(axes: Axes, curve: xr.Dataset, kind: str) -> None:
+def plot_curve(axes: Axes, curve: xr.Dataset, kind: str) -> None:
+    """Plot y_max and y_min of one variant with the symbol of `kind`, such as ``lubricant``."""
     look = palette.LOOKS[kind]
     nu = curve["nu"].values
     step = max(1, nu.size // SYMBOLS.get(kind, nu.size))

@@ -30,7 +30,8 @@ multiple of a parameter."""
 class Wanted(NamedTuple):
     """A curve: the special point that it goes through, and what changes along it.
 
-    `times` is the multiple of the parameter at which the special point is found.
+    `times` is the multiple of the parameter at which the special point is found. The folds of b-□
+    have two curves, because the walk along one may stop at the cusp.
     """
 
     variant: str
@@ -45,6 +46,7 @@ DAMPING, LENGTH = "damping", "damping_length"
 WANTED = (
     Wanted("c-material", "switching", 0.64, DAMPING),
     Wanted("b-material", "fold", 0.82, DAMPING),
+    Wanted("b-material", "fold", 0.70, DAMPING, 1.8),
     Wanted("b-material", "grazing_front", 0.80, DAMPING),
     Wanted("c-material", "grazing_front", 0.82, DAMPING),
     Wanted("c-material", "grazing_front", 0.82, LENGTH),

@@ -110,6 +110,11 @@ def _loops(n: _Numbers) -> str:
     )
 
 
+def _loops_with_more_damping(n: _Numbers) -> str:
+    more = n.five("loop_end", "c-material-5x")
+    return f"{_loops(n)}, and {more} with 5k: the point moves down as the damping grows"
+
+
 def _contact_loss(n: _Numbers) -> str:
     name = "c-lubricant"
     return (
@@ -159,5 +164,5 @@ _SENTENCES: dict[str, Callable[[_Numbers], str]] = {
     "F4.3": _neutral,
     "F5.1": _loops,
     "F5.2": _loops,
-    "F6.2": _loops,
+    "F6.2": _loops_with_more_damping,
 }

@@ -37,7 +37,7 @@ def draw(basins: xr.Dataset, phases: xr.Dataset, special: list[Row]) -> Figure:
     special : list of dict
         `special_points.json`.
     """
-    figure = Figure(figsize=(WIDTH, 5.4), layout="constrained")
+    figure = Figure(figsize=(WIDTH, 5.6), layout="constrained")
     upper, lower = np.ravel(figure.subfigures(2, 1, height_ratios=(1.25, 1.0)))
     row = upper.subplots(1, basins.sizes["nu"], sharey=True)
     for axes, nu in zip(row, basins["nu"].values, strict=True):
@@ -49,6 +49,7 @@ def draw(basins: xr.Dataset, phases: xr.Dataset, special: list[Row]) -> Figure:
     start = Line2D([], [], ls="none", label="the paper's start", **_START)
     upper.legend(handles=[*patches, start], loc="outside lower center", ncols=4)
     _draw_share(lower.subplots(), phases, special)
+    lower.legend(loc="outside lower center", ncols=5)
     return figure
 
 
@@ -95,4 +96,3 @@ def _draw_share(axes: Axes, phases: xr.Dataset, special: list[Row]) -> None:
     axes.set_xlabel("mesh frequency $\\nu_s$")
     axes.set_ylabel("starting phases with contact loss, %")
     axes.set_title("c •  what the paper's start becomes at all starting phases")
-    axes.legend(loc="lower left", bbox_to_anchor=(0.7, 0.1))

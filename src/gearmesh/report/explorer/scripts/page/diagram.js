@@ -27,7 +27,10 @@ class Diagram {
     this.special = sweep.active ? [] : studySpecialPoints(view.variant);
     const low = Math.min(NU_FIRST, view.nu), high = Math.max(NU_LAST, view.nu);
     const wide = low < high ? [low, high] : [low - 0.1, high + 0.1];
-    const y = rangeOf(sets.map((set) => set.y).concat([[0, 1.5], result.extrema.map((e) => e.y)]));
+    // The range stays as it is while the run fits in, so that the dots need not be drawn again.
+    const known = sets.map((set) => set.y).concat([[0, 1.5]]);
+    let y = rangeOf(known);
+    if (result.yMax > y[1] || result.yMin < y[0]) y = rangeOf(known.concat([[result.yMin, result.yMax]]));
     this.frame = new Frame(54, 12, width - 66, height - 56, wide, y);
     this.backlash = result.problem.backlash;
   }
