@@ -24,7 +24,6 @@ def test_every_parameter_is_written_in_the_table_and_in_the_report(pair):
         assert (written["non_adhesive"], written["damping_follows_stiffness"]) == ("yes", "sqrt")
 
 
-def test_the_explorer_has_no_slider_for_what_differs_between_the_wheels(pair):
-    equal = {one.control.name for one in controls.shown(pair)}
-    different = {one.control.name for one in controls.shown(pair.replace(**GENERAL))}
-    assert equal - different == {"body_mass"}
+def test_the_explorer_has_single_numbers_for_its_solver(pair):
+    values = controls.of_one_wheel(pair.replace(**GENERAL))
+    assert (values["teeth"], values["body_mass"], values["eccentricity"]) == (20, 2.0, 0.0)
