@@ -65,8 +65,8 @@ speed that it states.
 Two pairs
 ---------
 gamma halves in double contact, and for equal wheels one pair is before the pitch point when the
-other is behind it: their forces cancel. Their moments on each wheel do not, because the arms differ by a base pitch;
-they cancel only in the sum coordinate phi_3 + phi_2.
+other is behind it: their forces cancel. Their moments on each wheel do not, because the arms differ
+by a base pitch; they cancel only in the sum coordinate phi_3 + phi_2.
 """
 
 import math
