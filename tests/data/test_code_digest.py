@@ -1,5 +1,6 @@
 """The digest of the code of a job: what belongs to it, and what does not."""
 
+import ast
 import json
 
 import pytest
@@ -46,3 +47,16 @@ def test_the_imports_of_a_notebook_are_followed(tmp_path):
     found = provenance.sources(notebook)
     assert {provenance.module("model/damping"), provenance.module("data/paths")} <= {*found}
     assert provenance.module("model/friction") not in found
+
+
+@pytest.mark.parametrize(
+    ("statement", "name"),
+    [
+        ("from .extra import VALUE", "gearmesh.data.extra"),
+        ("from ..model import damping", "gearmesh.model.damping"),
+        ("def f():\n    from gearmesh.data import paths", "gearmesh.data.paths"),
+    ],
+)
+def test_imports_are_found_where_they_stand(statement, name):
+    place = provenance.PACKAGE / "data" / "module.py"
+    assert name in {*provenance._imported_names(ast.parse(statement), place)}
