@@ -19,8 +19,8 @@ PIP := $(BIN)/python -I -m pip install --quiet --disable-pip-version-check
 # Nothing without a hash is ever installed, so the few packages that come as sources are built
 # with the setuptools of the lock instead of one that pip would fetch for the purpose.
 # The lock is complete, so pip need not resolve: it would also stumble over extras in hash mode.
-# Python compiles what is imported when it is: a fraction of what pip would compile.
-LOCKED := $(PIP) --require-hashes --no-deps --no-build-isolation --no-compile
+# pip compiles all modules: where PYTHONDONTWRITEBYTECODE is set, each process would do it again.
+LOCKED := $(PIP) --require-hashes --no-deps --no-build-isolation
 SNAKEMAKE := $(BIN)/python -I -m snakemake $(if $(CORES),--cores $(CORES))
 UV_COMPILE := uv pip compile --quiet --universal --python-version 3.11 --fork-strategy fewest \
 	--generate-hashes --no-annotate --no-header --no-emit-index-url

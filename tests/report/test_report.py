@@ -2,6 +2,7 @@
 
 import base64
 import dataclasses
+import math
 import re
 import xml.etree.ElementTree as ElementTree
 from html.parser import HTMLParser
@@ -21,7 +22,7 @@ from gearmesh.report import why
 from gearmesh.report.explorer import views
 from gearmesh.report.explorer.controls import CONTROLS
 from gearmesh.report.notebook_page import notebook_page
-from gearmesh.report.presentation import claims_table, expected, found, number, typeset
+from gearmesh.report.presentation import claims_table, expected, found, number, quantity, typeset
 from gearmesh.reproduction.claims import Entry, Evidence, load_ledger, write_entries
 from gearmesh.reproduction.claims.checking import check_figure
 from gearmesh.reproduction.equations import EQUATIONS
@@ -341,6 +342,24 @@ def test_a_written_number_is_the_number(value):
     plain = str.maketrans("−⁻⁰¹²³⁴⁵⁶⁷⁸⁹", "--0123456789", "\u202f")
     read = float(number(value).translate(plain).replace("·10", "e"))
     assert read == pytest.approx(value, rel=1e-4)
+
+
+@pytest.mark.parametrize(
+    ("value", "unit", "text"),
+    [
+        (0.08, "mm", "0.08 mm"),
+        (math.pi / 9, "rad", "20°"),
+        (21, "1", "21"),
+        ((21, 34), "1", "21, 34"),
+        ((0.0, 0.0), "N*m*s/rad", "0 N m s/rad"),
+        ((), "mm", "none"),
+        (((0.001, 0.002), (0.0, 0.5)), "mm", "(0.001, 0.002), (0, 0.5) mm"),
+        (False, "1", "no"),
+        ("sqrt", "1", "sqrt"),
+    ],
+)
+def test_values_of_parameters_are_written_with_their_units(value, unit, text):
+    assert quantity(value, unit) == text
 
 
 @pytest.mark.parametrize(

@@ -8,8 +8,10 @@ import pytest
 from scipy.linalg import expm
 from scipy.optimize import brentq
 
+from gearmesh.interface.branches import follow
+from gearmesh.interface.orbits import find_orbit
 from gearmesh.reproduction.mechanisms import bands, tables
-from gearmesh.reproduction.mechanisms.answers import Points, special_table
+from gearmesh.reproduction.mechanisms.answers import Points, special_table, time_constant
 from gearmesh.reproduction.mechanisms.explanations import mechanisms
 from gearmesh.reproduction.mechanisms.orbits import WITHOUT_SUPPORTS, branches, doubled
 
@@ -143,3 +145,14 @@ def test_a_band_with_smooth_edges_is_told_from_one_with_steps():
     high[nu > 0.72] += 0.4
     stepped = bands.band(nu, high, -0.05 + 0.0 * nu, spread, math.nan)
     assert 0.95 < stepped["smooth"] < 1.0
+
+
+def test_the_damping_of_the_mesh_vanishes_towards_the_grazing(pair):
+    branch = follow(find_orbit(pair, "c-lubricant", 1.05), "nu", (1.04, 1.13))
+    table = tables.table("c-lubricant", [branch])
+    times = [time_constant(table, pair, "c-lubricant", nu) for nu in (1.05, 1.1, 1.128)]
+    orbit = find_orbit(pair, "c-lubricant", 1.1)
+    bodies, mesh = np.abs(orbit.multipliers[[0, 2]])
+    assert times[1] == pytest.approx(-1.0 / math.log(mesh), rel=0.02)
+    assert bodies > mesh  # the bodies on their bearings are not what the answer is about
+    assert times[0] < 0.5 * times[1] < 0.05 * times[2]

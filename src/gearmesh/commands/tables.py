@@ -6,7 +6,6 @@ from collections.abc import Sequence
 
 from gearmesh.study.derived import derived
 from gearmesh.study.pair import Pair
-from gearmesh.study.schema import Section
 
 WIDTH = 100
 """Columns of a table."""
@@ -94,12 +93,9 @@ def _text(value: object) -> str:
         return "-"
     if isinstance(value, tuple):
         return ", ".join(dict.fromkeys(map(_text, value))) or "none"
-    if isinstance(value, Section):  # a harmonic or the factor of a tooth
-        stated = value.model_dump(exclude_none=True)
-        return " ".join(f"{name} {_text(item)}" for name, item in stated.items())
     if isinstance(value, bool):
         return "yes" if value else "no"
-    return value if isinstance(value, str) else f"{value:.8g}"
+    return f"{value:.8g}" if isinstance(value, int | float) else str(value)
 
 
 def print_table(rows: Sequence[Sequence[str]]) -> None:

@@ -10,7 +10,7 @@ import functools
 import hashlib
 import itertools
 from collections.abc import Container, Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
 
@@ -115,6 +115,7 @@ LOAD_FIELDS = (
     Field("transmission_error_range", "", "mm", "dynamic transmission error, peak to peak"),
     Field("force_max", "", "N", "greatest tooth force"),
     Field("force_min", "", "N", "least tooth force; negative: on rear flanks, or pulling"),
+    Field("least_contact_force", "", "N", "least force on touching flanks; negative: they pull"),
     Field("dynamic_factor", "", "1", "dynamic factor K_v, greatest tooth force over static force"),
     Field("force_bearing_3_max", "", "N", "greatest force on the bearing of wheel 3 along y"),
     Field("force_bearing_2_max", "", "N", "greatest force on the bearing of wheel 2 along y"),
@@ -209,10 +210,11 @@ def _loads(response: Response, problem: Problem) -> Iterator[tuple[Field, object
     if response.samples is None:  # the run failed
         yield from ((field, np.nan) for field in LOAD_FIELDS)
         return
-    found = loads(problem, response.samples)
+    found = asdict(loads(problem, response.samples))
+    found["dynamic_factor"] = found["force_max"]
+    found["least_contact_force"] = response.least_contact_force
     for field in LOAD_FIELDS:
-        of_force = field.name == "dynamic_factor"
-        yield field, found.force_max if of_force else getattr(found, field.name)
+        yield field, found[field.name]
     for field in LOAD_SAMPLE_FIELDS:
         yield field, getattr(response.samples, field.name)
 

@@ -110,16 +110,15 @@ def _symbol(match: re.Match[str]) -> str:
     return f'<span style="white-space: nowrap">{letter}-{LOOKS[where].symbol}{multiple}</span>'
 
 
-def quantity(value: float | str | tuple[Any, ...], unit: str) -> str:
-    """Write the value of a parameter with its unit."""
-    if isinstance(value, str):
-        return value
+def quantity(value: Any, unit: str) -> str:
+    """Write the value of a parameter with its unit; values of two equal wheels are written once."""
+    if isinstance(value, bool) or not isinstance(value, int | float | tuple):
+        return _line(value)
     if isinstance(value, tuple):
-        harmonics = [f"({number(c[0])}, {number(c[1])})" for c in value if isinstance(c, tuple)]
-        if harmonics:
-            return f"{', '.join(harmonics)} {unit}"
-        numbers = dict.fromkeys(item for item in value if not isinstance(item, tuple))
-        return ", ".join(quantity(item, unit) for item in numbers) or "none"
+        if any(isinstance(item, tuple) for item in value):
+            rows = (f"({', '.join(quantity(part, '1') for part in item)})" for item in value)
+            return ", ".join(rows) + ("" if unit == "1" else f" {unit}")
+        return ", ".join(quantity(item, unit) for item in dict.fromkeys(value)) or "none"
     if unit == "rad":
         return f"{number(math.degrees(value))}°"
     return number(value) + ("" if unit == "1" else f" {unit.replace('*', ' ')}")

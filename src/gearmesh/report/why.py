@@ -42,6 +42,7 @@ def section(study: Study, places: Places, figures: Mapping[str, object]) -> str:
         special,
         {name: open_dataset(places.mechanism(name)) for name in names},
         json.loads(places.thresholds.read_text(encoding="utf-8")),
+        study.pair,
     )
     closing = _closing(read_entries(places.ledger))
     template = environment().get_template("why.html.j2")

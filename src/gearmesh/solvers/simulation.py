@@ -1,9 +1,9 @@
 """Integration of runs, one or thousands, to a tolerance.
 
 `simulate` is the entry to both solvers: the compiled sweep over SIMD lanes
-(`gearmesh.solvers.reduced.sweep`) for the reduced system, and the general solver in the six
-coordinates (`gearmesh.solvers.full.runs`) for what the reduction leaves out: run-out, profile
-deviation and the truncated Fourier series of the stiffness.
+(`gearmesh.solvers.reduced.sweep`) for the reduced system, and the general solver
+(`gearmesh.solvers.full.runs`) for what the reduction leaves out: different wheels, run-out, profile
+deviation, and all stiffnesses and forces beyond those of the paper's examples.
 """
 
 from collections.abc import Sequence

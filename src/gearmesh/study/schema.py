@@ -68,6 +68,10 @@ class Section(BaseModel):
             return value
         return read_declared(value, declared)
 
+    def __str__(self) -> str:
+        stated = self.model_dump(exclude_none=True)
+        return " ".join(f"{name} {value}" for name, value in stated.items())
+
     @classmethod
     def declarations(cls) -> dict[str, dict[str, Any]]:
         """Return unit, symbol, range and description of each quantity by its name."""

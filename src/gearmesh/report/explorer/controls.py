@@ -74,7 +74,11 @@ def of_one_wheel(pair: Pair) -> dict[str, Any]:
     The solver of the page has equal wheels. It says so to a study that has others.
     """
     values = pair.model_dump(mode="json")
-    both = [name for name, stated in Pair.declarations().items() if stated["of_wheels"]]
+    both = [
+        name
+        for name, stated in Pair.declarations().items()
+        if stated["of_wheels"] or stated["may_differ"]
+    ]
     return {**values, **{name: of_wheels(getattr(pair, name))[0] for name in both}}
 
 

@@ -7,11 +7,13 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
+from gearmesh.model.variants import variant as read_variant
 from gearmesh.reproduction.mechanisms.bands import NEAR_FIRST_JUMP, band
 from gearmesh.reproduction.mechanisms.bands import VARIANTS as BANDED
 from gearmesh.reproduction.mechanisms.starts import VARIANT
 from gearmesh.reproduction.mechanisms.sweeps import DIRECTIONS, SEPARATE
 from gearmesh.reproduction.mechanisms.tables import Row
+from gearmesh.study.pair import Pair
 
 KINDS = ("switching", "flip", "grazing_front", "grazing_back", "fold", "torus", "branch_point")
 """Kinds of special points in the order of the table."""
@@ -61,7 +63,10 @@ def special_table(rows: Sequence[Row]) -> list[tuple[str, str, int, list[str], l
 
 
 def answers(
-    rows: Sequence[Row], datasets: Mapping[str, xr.Dataset], thresholds: Mapping[str, Any]
+    rows: Sequence[Row],
+    datasets: Mapping[str, xr.Dataset],
+    thresholds: Mapping[str, Any],
+    pair: Pair,
 ) -> dict[str, Any]:
     """Return the numbers of the eight questions, by name; not-a-number where a study has none.
 
@@ -73,6 +78,8 @@ def answers(
         `branches` and the datasets of `gearmesh.data.paths.MECHANISMS`, by name.
     thresholds : mapping
         `thresholds.json`: what five revolutions make of it.
+    pair : Pair
+        The pair of the study.
     """
     points = Points(rows)
     return {
@@ -83,7 +90,7 @@ def answers(
         "starts": _starts(datasets["phases"]),
         "basins": _shares(datasets["basins"]),
         "sweep": _sweep_jumps(datasets["sweeps"]),
-        "decay": lambda nu: time_constant(datasets["branches"], VARIANT, nu),
+        "decay": lambda nu: time_constant(datasets["branches"], pair, VARIANT, nu),
         "bands": _bands(datasets["bands"], thresholds),
         "changes": _changes(datasets["bands"]),
         "cusps": _cusps(datasets["special_curves"]),
@@ -164,16 +171,26 @@ def _sweep_jumps(sweeps: xr.Dataset) -> dict[str, dict[str, float]]:
     return found
 
 
-def time_constant(branches: xr.Dataset, variant: str, nu: float) -> float:
-    """Return the mesh periods in which a deviation from the stable orbit at ν_s falls by e."""
+def time_constant(branches: xr.Dataset, pair: Pair, variant: str, nu: float) -> float:
+    """Return the mesh periods in which a deviation in the mesh from the stable orbit falls by e.
+
+    Two of the four multipliers belong to the bodies on their bearings. Heavy bodies move alone, so
+    their two have the size exp(-ζ w T), with the body's natural frequency w; they are left out.
+    """
     own = (branches["variant"] == variant) & (branches["stability"] == 1)
     own &= branches["periods"] == 1
     points = branches.isel(point=np.flatnonzero(own)).sortby("nu")
-    parts = (points[f"multipliers_{part}"].values for part in ("real", "imaginary"))
-    size, inside = np.hypot(*parts).max(axis=1), points["nu"].values
+    inside = points["nu"].values
     if not inside.size or not inside[0] <= nu <= inside[-1]:
         return np.nan
-    return float(-1.0 / np.log(np.interp(nu, inside, size)))
+    parts = (points[f"multipliers_{part}"].values for part in ("real", "imaginary"))
+    sizes = np.hypot(*parts)
+    problem = pair.problem(read_variant(variant), nu)
+    frequency = np.sqrt(problem.bearing_stiffness / problem.body_mass)
+    bodies = np.exp(-problem.bearing_damping_ratio * frequency * 2.0 * np.pi / inside)
+    order = np.argsort(np.abs(sizes - bodies[:, None]), axis=1)
+    mesh = np.take_along_axis(sizes, order[:, 2:], axis=1).max(axis=1)
+    return float(-1.0 / np.log(np.interp(nu, inside, mesh)))
 
 
 def _bands(bands: xr.Dataset, thresholds: Mapping[str, Any]) -> list[dict[str, Any]]:

@@ -46,7 +46,7 @@ class Diagram {
             if (set.maximum[i] === maximum) chosen.push(frame.toX(set.nu[i]), frame.toY(set.y[i]));
           }
           const colour = set.pale ? theme.line : maximum ? theme.of(set.variant) : theme.soft;
-          pen.dots(chosen, colour, set.pale ? 2 : 1.8);
+          pen.dots(chosen, colour, (set.pale ? 2 : 1.8) + (NUMBERS.nu.length < 60 ? 1.5 : 0));
         }
       }
       this.branches.forEach((branch) => this.branch(pen, theme, branch));
