@@ -37,7 +37,7 @@ TARGETS = {
     ),
     "reruns": (
         ["pipeline/plan.py", "data/provenance.py", "pipeline/inputs.py"],
-        ["tests/pipeline tests/study/test_provenance.py"],
+        ["tests/pipeline tests/data/test_code_digest.py"],
     ),
 }
 """Files below src/gearmesh, and the tests that should notice a change in them.

@@ -1,8 +1,8 @@
 """What the general solver costs beside the reduced one: ``python -m benchmarks.general``.
 
-The 27 single runs of `benchmarks.cases`, each in a call of its own, with estimates of the errors, as
-the pipeline calls the solvers. Times are CPU times, the least of several rounds. The record of the
-equations (`gearmesh.solvers.full.tape`) is made anew for every kind of law, not for every mesh
+The 27 single runs of `benchmarks.cases`, each in a call of its own, with estimates of the errors,
+as the pipeline calls the solvers. Times are CPU times, the least of several rounds. The record of
+the equations (`gearmesh.solvers.full.tape`) is made anew for every kind of law, not for every mesh
 frequency; its time is listed apart.
 """
 

@@ -14,7 +14,9 @@ from gearmesh.model.friction import (
     friction_force,
     mesh_gamma,
     pairs_in_contact,
+    pitch_offset,
 )
+from gearmesh.model.involute import Involute
 from gearmesh.model.stiffness import in_double_contact
 
 EPSILON, ALPHA, TEETH = 1.569, math.radians(20.0), 21
@@ -109,3 +111,14 @@ def test_the_kronecker_symbol_looks_at_the_sum():
     assert not follows_run_out(2.0, -2.0)
     assert follows_run_out(0.0, 2.0)
     assert follows_run_out(2.0, 2.0)
+
+
+def test_the_pitch_point_divides_the_path_as_the_tip_circles_do():
+    assert pitch_offset(21, 21, ALPHA, EPSILON) == 0.0
+    # 20 teeth drive 40: the wheel's teeth reach further on the mesh line than the pinion's.
+    path = Involute(1.0, (20, 40), ALPHA).contact_ratio
+    offset = pitch_offset(20, 40, ALPHA, path)
+    tip, base = 21.0, 20.0 * math.cos(ALPHA)
+    approach = math.sqrt(tip**2 - base**2) - 20.0 * math.sin(ALPHA)
+    assert 0.5 * path + offset == pytest.approx(approach / (math.pi * math.cos(ALPHA)), abs=1e-12)
+    assert pitch_offset(40, 20, ALPHA, path) == pytest.approx(-offset)

@@ -192,4 +192,5 @@ def test_a_user_without_a_name_gets_one(monkeypatch):
 def test_each_command_finds_python_and_the_study(plan):
     prefix = pipeline.prefix(plan)
     assert prefix.startswith("set -euo pipefail; ")
-    assert "STUDY=config/tiny.yaml; unset NUMBA_DISABLE_JIT; " in prefix
+    assert " STUDY=config/tiny.yaml " in prefix
+    assert prefix.endswith("; unset NUMBA_DISABLE_JIT; ")

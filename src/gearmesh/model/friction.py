@@ -3,23 +3,25 @@
 Geometry
 --------
 y runs along the mesh line, in the direction in which wheel 3 pushes wheel 2, and z across it. The
-centre of wheel 3 lies at z = -R_b, that of wheel 2 at z = +R_b, and the mesh line touches the
-base circles 2 R_b tan(alpha) apart, with the pitch point half-way. A pair of teeth touches at the
-distance sigma from the pitch point; sigma grows with time, from -epsilon p_b / 2, where the pair
-comes into contact, to +epsilon p_b / 2, where it leaves, at one base pitch p_b = 2 pi R_b / Z in a
-mesh period. Seen from the points where the mesh line touches the base circles, the contact is at
+centre of wheel 3 lies at z = -R_b3, that of wheel 2 at z = +R_b2, and the mesh line touches the
+base circles (R_b3 + R_b2) tan(alpha) apart; the pitch point divides this in the ratio of the radii.
+A pair of teeth touches at the distance sigma from the pitch point; sigma grows with time, from
+where the pair comes into contact to where it leaves epsilon p_b later, at one base pitch
+p_b = 2 pi R_bi / Z_i in a mesh period. For equal wheels the pitch point is the middle of this path;
+for others see `pitch_offset`. Seen from the points where the mesh line touches the base circles,
+the contact is at
 
-    rho_3 = R_b tan(alpha) + sigma,    rho_2 = R_b tan(alpha) - sigma.
+    rho_3 = R_b3 tan(alpha) + sigma,    rho_2 = R_b2 tan(alpha) - sigma.
 
-A rotation phi_3 moves the flank of wheel 3 by R_b phi_3 along y and by -rho_3 phi_3 along z; a
-rotation phi_2, counted in the same sense, moves that of wheel 2 by -R_b phi_2 and +rho_2 phi_2.
+A rotation phi_3 moves the flank of wheel 3 by R_b3 phi_3 along y and by -rho_3 phi_3 along z; a
+rotation phi_2, counted in the same sense, moves that of wheel 2 by -R_b2 phi_2 and +rho_2 phi_2.
 The friction force F_T on wheel 3 along +z, and -F_T on wheel 2, therefore do the virtual work
 
     F_T (dz_3 - dz_2) - rho_3 F_T dphi_3 - rho_2 F_T dphi_2,
 
 which gives its generalised forces: F_T and -F_T on z_3 and z_2, and the additional moments
-Delta M_T = -rho_3 F_T on phi_3 and -rho_2 F_T on phi_2. In phi_3 + phi_2 the arms add up to
-2 R_b tan(alpha) wherever the contact is.
+Delta M_T = -rho_3 F_T on phi_3 and -rho_2 F_T on phi_2. For equal wheels the arms in phi_3 + phi_2
+add up to 2 R_b tan(alpha) wherever the contact is.
 
 Sign
 ----
@@ -62,9 +64,9 @@ speed that it states.
 
 Two pairs
 ---------
-gamma halves in double contact, and one pair is before the pitch point when the other is behind it:
-their forces cancel. Their moments on each wheel do not, because the arms differ by a base pitch;
-they cancel only in the sum coordinate phi_3 + phi_2.
+gamma halves in double contact, and for equal wheels one pair is before the pitch point when the
+other is behind it: their forces cancel. Their moments on each wheel do not, because the arms differ
+by a base pitch; they cancel only in the sum coordinate phi_3 + phi_2.
 """
 
 import math

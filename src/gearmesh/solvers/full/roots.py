@@ -118,6 +118,24 @@ def _halve(parent, left, right, degree):
 
 
 @njit
+def _keeps_sign(coefficients, sign):
+    """Return whether a bound from below shows that `sign` times the polynomial is positive.
+
+    The bound is the least value of the first three terms, less what the others can take away.
+    """
+    rest = 0.0
+    for k in range(3, coefficients.size):
+        rest += abs(coefficients[k])
+    a = sign * coefficients[0] - rest
+    b = sign * coefficients[1] if coefficients.size > 1 else 0.0
+    c = sign * coefficients[2] if coefficients.size > 2 else 0.0
+    if a <= 0.0 or a + b + c <= 0.0:
+        return False
+    # A parabola that is positive at 0 and 1 has its least value between them, or none below.
+    return not (c > 0.0 and -2.0 * c < b < 0.0 and 4.0 * a * c <= b * b)
+
+
+@njit
 def first_change(coefficients, degree, sign, table):
     """Return the least s in <0; 1> where the polynomial no longer has `sign`, or `NEVER`.
 
@@ -140,10 +158,7 @@ def first_change(coefficients, degree, sign, table):
         return NEVER
     if coefficients[start] * sign < 0.0:
         return 0.0
-    rest = 0.0
-    for k in range(start + 1, degree + 1):
-        rest += abs(coefficients[k])
-    if rest < abs(coefficients[start]):
+    if _keeps_sign(coefficients[start : degree + 1], sign):
         return NEVER
     # Without its roots at 0 the polynomial has a lower degree.
     m = degree - start

@@ -14,6 +14,7 @@ from gearmesh.solvers.full.tape import (
     BRACKET,
     CONSTANT,
     CONTACT,
+    FACTORS,
     GAP,
     MOVES,
     N_BRANCHES,
@@ -22,6 +23,7 @@ from gearmesh.solvers.full.tape import (
     ROUND,
     SIGNED,
     SIGNS,
+    SUMMANDS,
     TIME,
     WAVE,
     V,
@@ -125,7 +127,7 @@ def _carry_out(mode, tape, forces, end, motion, motion_end, ahead, start, stop, 
 
     The second range, from `motion` on, follows `ahead` orders ahead of the first.
     """
-    operations, numbers, rows, factors, _ = tape
+    operations, numbers, _ = tape
     direction = mode.direction
     for k_forces in range(start, stop):
         for part in range(2):
@@ -139,8 +141,9 @@ def _carry_out(mode, tape, forces, end, motion, motion_end, ahead, start, stop, 
                 if code <= ACCELERATE:
                     if k == 0:
                         total = numbers[i, 0]
-                    for j in range(one, two):
-                        total += factors[j] * series[rows[j], k]
+                    for j in range(two):
+                        row = operations[i, SUMMANDS + j]
+                        total += numbers[i, FACTORS + j] * series[row, k]
                     if code == ACCELERATE:
                         total *= INVERSE[k + 1]
                         series[out + SIX, k + 1] = total
@@ -210,7 +213,7 @@ def branch_of(case, mode, variant):
 def _places(case, mode, tape, variant):
     """Return where the operations of the branch begin: of y, the accelerations, the outputs."""
     branch = branch_of(case, mode, variant)
-    return tape[4][branch, 0], tape[4][branch, 1], tape[4][branch, 2]
+    return tape[2][branch, 0], tape[2][branch, 1], tape[2][branch, 2]
 
 
 @inner
@@ -249,5 +252,5 @@ def expand(case, mode, tape, variant, series, order):
 def expand_outputs(case, mode, tape, variant, sampled, series):
     """Fill the series of the normal force and, if wanted, of all that is sampled."""
     branch = branch_of(case, mode, variant)
-    first, last = tape[4][branch, 2], tape[4][branch, 4 if sampled else 3]
+    first, last = tape[2][branch, 2], tape[2][branch, 4 if sampled else 3]
     _carry_out(mode, tape, first, last, 0, 0, 0, 0, case.order - 1, series)

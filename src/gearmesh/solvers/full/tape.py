@@ -43,12 +43,19 @@ MOVES is a sum whose rate is wanted too, in the next row. SIGNED is a product wi
 WAVE is the sine and cosine of an angle that is linear in time.
 """
 
-CODE, OUT, FIRST, SECOND, DEGREE = range(5)
+CODE, OUT, FIRST, SECOND, DEGREE, SUMMANDS = range(6)
 """Columns of an operation: what it does, the row that it writes, and its operands.
 
-The operands are rows, or for sums the ends of a range of summands. The degree is that in time of
-the first operand of a product.
+The operands of a product are two rows, and the degree in time of the first. A sum has the number of
+its summands in place of the second operand; their rows stand from SUMMANDS on.
 """
+
+ADDED, SLOPE, FACTORS = range(3)
+"""Columns of the numbers of an operation: a constant summand, the rate of the angle of WAVE, and
+from FACTORS on the factors of the summands."""
+
+_Operation = tuple[int, int, tuple[Any, ...]]
+"""What is done, the row that is written, and the operands."""
 
 _SUMS = (SUM, MOVES, ACCELERATE)
 
@@ -61,13 +68,10 @@ class Tape(NamedTuple):
 
     Attributes
     ----------
-    operations : ndarray of int, shape (n, 5)
-        With the columns `CODE` to `DEGREE`.
-    numbers : ndarray, shape (n, 2)
-        The constant summand of each operation, and for WAVE the rate of its angle.
-    rows : ndarray of int, shape (m,)
-    factors : ndarray, shape (m,)
-        The summands: rows and their factors.
+    operations : ndarray of int, shape (n, m)
+        With the columns `CODE` to `SUMMANDS` and further.
+    numbers : ndarray, shape (n, m)
+        With the columns `ADDED` to `FACTORS` and further.
     branches : ndarray of int, shape (`N_BRANCHES` * segments, 5)
         Where the operations of a branch begin: of y, of the accelerations, of the normal force, of
         what else is sampled; and where they end. Branches that cannot occur are zero.
@@ -75,8 +79,6 @@ class Tape(NamedTuple):
 
     operations: np.ndarray
     numbers: np.ndarray
-    rows: np.ndarray
-    factors: np.ndarray
     branches: np.ndarray
 
     @property
@@ -157,7 +159,7 @@ class _Trace:
     """The operations recorded so far, each only once."""
 
     def __init__(self) -> None:
-        self.operations: list[tuple[int, int, tuple[Any, ...]]] = []
+        self.operations: list[_Operation] = []
         self.degrees = {TIME: 1, CONSTANT: 0, SIGNS: 0}
         self._known: dict[tuple[Any, ...], int] = {}
         self._moduli: dict[int, int] = {}
@@ -264,8 +266,7 @@ def tape(problem: Problem, segments: Iterable[float]) -> Tape:
 @lru_cache(maxsize=256)
 def _recorded(problem: Problem, segments: tuple[float, ...]) -> Tape:
     columns = embedding(problem)
-    operations: list[tuple[Any, ...]] = []
-    terms: list[tuple[int, float]] = []
+    operations: list[_Operation] = []
     branches: list[tuple[int, ...]] = []
     sticks = (False, True) if signs_act(problem) else (False,)
     for segment in segments:
@@ -278,22 +279,16 @@ def _recorded(problem: Problem, segments: tuple[float, ...]) -> Tape:
                     parts = _record(problem, mode, columns, len(sticks) > 1)
                     places = [len(operations)]
                     for part in parts:
-                        operations += [_encoded(operation, terms) for operation in part]
+                        operations += part
                         places.append(len(operations))
                     found[branch_of(regime, stick, parted)] = tuple(places)
         branches += found
-    return Tape(
-        np.array([operation[:5] for operation in operations], np.uint64),
-        np.array([operation[5:] for operation in operations], np.float64),
-        np.array([row for row, _ in terms], np.uint64),
-        np.array([factor for _, factor in terms], np.float64),
-        np.array(branches, np.int64),
-    )
+    return Tape(*_arrays(operations), np.array(branches, np.int64))
 
 
 def _record(
     problem: Problem, mode: motion.Mode, columns: np.ndarray, signed: bool
-) -> list[list[tuple[int, int, tuple[Any, ...]]]]:
+) -> list[list[_Operation]]:
     """Return the operations of a branch in four parts, which `Tape.branches` lists."""
     trace = _Trace()
     time = trace.row(TIME)
@@ -353,7 +348,7 @@ def _record(
     ]
 
 
-def _needed(operations: list[tuple[int, int, tuple[Any, ...]]], rows: Iterable[int]) -> set[int]:
+def _needed(operations: list[_Operation], rows: Iterable[int]) -> set[int]:
     """Return the places of the operations that `rows` and the accelerations need."""
     wanted, found = set(rows), set()
     for i in range(len(operations) - 1, -1, -1):
@@ -368,15 +363,20 @@ def _needed(operations: list[tuple[int, int, tuple[Any, ...]]], rows: Iterable[i
     return found
 
 
-def _encoded(
-    operation: tuple[int, int, tuple[Any, ...]], terms: list[tuple[int, float]]
-) -> tuple[Any, ...]:
-    code, out, operands = operation
-    if code in _SUMS:
-        first = len(terms)
-        terms += operands[0]
-        return code, out, first, len(terms), 0, operands[1], 0.0
-    if code == WAVE:
-        return code, out, 0, 0, 0, operands[1], operands[0]
-    row, other, degree = (*operands, 0, 0)[:3]
-    return code, out, row, other, degree, 0.0, 0.0
+def _arrays(operations: list[_Operation]) -> tuple[np.ndarray, np.ndarray]:
+    """Return operations and their numbers, as `Tape` holds them."""
+    most = max((len(operands[0]) for code, _, operands in operations if code in _SUMS), default=0)
+    table = np.zeros((len(operations), SUMMANDS + most), np.uint64)
+    numbers = np.zeros((len(operations), FACTORS + most))
+    for i, (code, out, operands) in enumerate(operations):
+        table[i, CODE], table[i, OUT] = code, out
+        if code in _SUMS:
+            summands, numbers[i, ADDED] = operands
+            table[i, SECOND] = len(summands)
+            for j, (row, factor) in enumerate(summands):
+                table[i, SUMMANDS + j], numbers[i, FACTORS + j] = row, factor
+        elif code == WAVE:
+            numbers[i, SLOPE], numbers[i, ADDED] = operands
+        else:
+            table[i, FIRST : FIRST + len(operands)] = operands
+    return table, numbers
