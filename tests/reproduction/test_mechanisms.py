@@ -10,7 +10,7 @@ from scipy.optimize import brentq
 
 from gearmesh.interface.branches import follow
 from gearmesh.interface.orbits import find_orbit
-from gearmesh.reproduction.mechanisms import bands, tables
+from gearmesh.reproduction.mechanisms import bands, files, tables
 from gearmesh.reproduction.mechanisms.answers import Points, special_table, time_constant
 from gearmesh.reproduction.mechanisms.explanations import mechanisms
 from gearmesh.reproduction.mechanisms.orbits import WITHOUT_SUPPORTS, branches, doubled
@@ -103,7 +103,7 @@ def test_a_table_gives_stability_period_and_signature_of_each_point(lubricant, p
 def test_the_same_branches_give_the_same_bytes(lubricant, study, tmp_path):
     table = tables.table("c-lubricant", lubricant)
     for name in ("one.nc", "two.nc"):
-        tables.write(tmp_path / name, table, study, "branches")
+        files.write(tmp_path / name, table, study, "branches")
     assert (tmp_path / "one.nc").read_bytes() == (tmp_path / "two.nc").read_bytes()
 
 

@@ -25,9 +25,15 @@ def ledger(study: Study, places: Places) -> list[Path]:
 
     from gearmesh.data.writing import write_text
     from gearmesh.reproduction.claims import collect, load_ledger, verdict
+    from gearmesh.reproduction.mechanisms import explanations
 
     checks = [places.check(name) for name in CHECKED]
-    entries = collect(load_ledger(study.ledger), checks, places.ledger, _mechanisms(study, places))
+    explained = (
+        explanations.of_run(places.special_points, places.thresholds)
+        if study.plan.mechanisms
+        else {}
+    )
+    entries = collect(load_ledger(study.ledger), checks, places.ledger, explained)
     found: dict[str, Counter[str]] = {}
     for entry in entries:
         found.setdefault(entry.figure, Counter())[entry.status] += 1
@@ -51,18 +57,3 @@ def verdict(study: Study, places: Places) -> list[Path]:
         sys.exit(UNEXPECTED)
     write_text(places.as_expected, "All claims have the statuses that the ledger expects.\n")
     return [places.as_expected]
-
-
-def _mechanisms(study: Study, places: Places) -> dict[str, str]:
-    """Return the orbits that explain claims, none if the study follows no orbits."""
-    import json
-
-    from gearmesh.reproduction.mechanisms.explanations import mechanisms
-
-    if study.plan.mechanisms is None:
-        return {}
-    points, thresholds = (
-        json.loads(path.read_text(encoding="utf-8"))
-        for path in (places.special_points, places.thresholds)
-    )
-    return mechanisms(points, thresholds)

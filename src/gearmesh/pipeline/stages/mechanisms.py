@@ -16,7 +16,7 @@ def orbits(study: Study, places: Places, letter: str) -> list[Path]:
     import json
 
     from gearmesh.data.writing import write_text
-    from gearmesh.reproduction.mechanisms import tables
+    from gearmesh.reproduction.mechanisms import files, tables
     from gearmesh.reproduction.mechanisms.orbits import WITHOUT_SUPPORTS, branches, doubled
 
     limits = float(study.nu[0]), float(study.nu[-1])
@@ -31,7 +31,7 @@ def orbits(study: Study, places: Places, letter: str) -> list[Path]:
     for name in names if letter != "a" else []:
         rows += tables.rows(name, branches(simpler, name, limits), WITHOUT_SUPPORTS)
     dataset, points = places.orbits(letter)
-    tables.write(dataset, tables.joined(made), study, "branches of orbits")
+    files.write(dataset, tables.joined(made), study, "branches of orbits")
     write_text(points, json.dumps(rows))
     return [dataset, points]
 
@@ -42,14 +42,14 @@ def branches(study: Study, places: Places) -> list[Path]:
 
     from gearmesh.data.datasets import open_dataset
     from gearmesh.data.writing import write_text
-    from gearmesh.reproduction.mechanisms import tables
+    from gearmesh.reproduction.mechanisms import files, tables
 
     letters = _mechanisms(study).by_letter
     _remove_other_letters(places, letters)
-    files = [places.orbits(letter) for letter in letters]
-    made = tables.joined(open_dataset(dataset) for dataset, _ in files)
-    tables.write(places.branches, made, study, "branches of orbits")
-    rows = [row for _, points in files for row in json.loads(points.read_text(encoding="utf-8"))]
+    found = [places.orbits(letter) for letter in letters]
+    made = tables.joined(open_dataset(dataset) for dataset, _ in found)
+    files.write(places.branches, made, study, "branches of orbits")
+    rows = [row for _, points in found for row in json.loads(points.read_text(encoding="utf-8"))]
     rows.sort(key=lambda row: "parameters" in row)
     write_text(places.special_points, json.dumps(rows, indent=1) + "\n")
     return [places.branches, places.special_points]
@@ -58,45 +58,45 @@ def branches(study: Study, places: Places) -> list[Path]:
 def basins(study: Study, places: Places) -> list[Path]:
     """Find what the starts and the starting phases of c-• lead to."""
     from gearmesh.data.datasets import open_dataset
-    from gearmesh.reproduction.mechanisms import starts, tables
+    from gearmesh.reproduction.mechanisms import files, starts
 
     resolution = _mechanisms(study).resolution
     known = open_dataset(places.branches)
     made = starts.basins(study.pair, known, resolution), starts.phases(study.pair, resolution)
-    files = [places.mechanism("basins"), places.mechanism("phases")]
-    for file, dataset in zip(files, made, strict=True):
-        tables.write(file, dataset, study, file.stem)
-    return files
+    written = [places.mechanism("basins"), places.mechanism("phases")]
+    for file, dataset in zip(written, made, strict=True):
+        files.write(file, dataset, study, file.stem)
+    return written
 
 
 def sweeps(study: Study, places: Places) -> list[Path]:
     """Sweep ν_s up and down, for the variants of the study and over the damping."""
-    from gearmesh.reproduction.mechanisms import sweeps, tables
+    from gearmesh.reproduction.mechanisms import files, sweeps
 
     chosen = _mechanisms(study)
     damped = [name for name in chosen.variants if name != "a-conservative"]
     swept = sweeps.sweeps(study.pair, damped)
-    tables.write(places.mechanism("sweeps"), swept, study, "sweeps up and down")
+    files.write(places.mechanism("sweeps"), swept, study, "sweeps up and down")
     mapped = sweeps.design_map(study.pair, chosen.resolution // 3 + 1)
-    tables.write(places.mechanism("design_map"), mapped, study, "design map")
+    files.write(places.mechanism("design_map"), mapped, study, "design map")
     return [places.mechanism("sweeps"), places.mechanism("design_map")]
 
 
 def bands(study: Study, places: Places) -> list[Path]:
     """Measure the bands of extrema with lubricant damping after 5, 50 and 500 revolutions."""
-    from gearmesh.reproduction.mechanisms import bands, tables
+    from gearmesh.reproduction.mechanisms import bands, files
 
     found = bands.bands(study.pair, _mechanisms(study).variants)
-    tables.write(places.mechanism("bands"), found, study, "bands of extrema")
+    files.write(places.mechanism("bands"), found, study, "bands of extrema")
     return [places.mechanism("bands")]
 
 
 def lyapunov(study: Study, places: Places) -> list[Path]:
     """Compute the Lyapunov exponents of the conservative variant."""
-    from gearmesh.reproduction.mechanisms import exponents, tables
+    from gearmesh.reproduction.mechanisms import exponents, files
 
     found = exponents.exponents(study.pair, _mechanisms(study).resolution)
-    tables.write(places.mechanism("lyapunov"), found, study, "Lyapunov exponents")
+    files.write(places.mechanism("lyapunov"), found, study, "Lyapunov exponents")
     return [places.mechanism("lyapunov")]
 
 
@@ -104,11 +104,11 @@ def special_curves(study: Study, places: Places) -> list[Path]:
     """Follow special points over ν_s and the damping, and over ν_s and the damping length."""
     import json
 
-    from gearmesh.reproduction.mechanisms import curves, tables
+    from gearmesh.reproduction.mechanisms import curves, files
 
     rows = json.loads(places.special_points.read_text(encoding="utf-8"))
     found = curves.curves(study.pair, rows)
-    tables.write(places.mechanism("special_curves"), found, study, "curves of special points")
+    files.write(places.mechanism("special_curves"), found, study, "curves of special points")
     return [places.mechanism("special_curves")]
 
 

@@ -1,7 +1,9 @@
 """Which orbit explains a claim: a sentence for each, with the exact ν_s beside the measured one."""
 
+import json
 import math
 from collections.abc import Callable, Mapping, Sequence
+from pathlib import Path
 from typing import Any
 
 from gearmesh.reproduction.mechanisms.answers import Points
@@ -27,6 +29,14 @@ def mechanisms(rows: Sequence[Row], thresholds: Mapping[str, Any]) -> dict[str, 
         except LookupError:
             continue
     return found
+
+
+def of_run(special_points: Path, thresholds: Path) -> dict[str, str]:
+    """Return the mechanisms of a run from its files."""
+    points, found = (
+        json.loads(path.read_text(encoding="utf-8")) for path in (special_points, thresholds)
+    )
+    return mechanisms(points, found)
 
 
 class _Numbers:

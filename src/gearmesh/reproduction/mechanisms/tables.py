@@ -1,16 +1,12 @@
 """Branches as one table over all their points, and special points as rows of a list."""
 
 from collections.abc import Iterable, Mapping, Sequence
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 import xarray as xr
 
-from gearmesh.data import casefile
-from gearmesh.data.writing import replacing
 from gearmesh.interface.branches import Branch, SpecialPoint
-from gearmesh.study.cases import Study
 
 STABILITY = {1: "stable", 0: "neutral", -1: "unstable"}
 """Values of the flag `stability`."""
@@ -99,24 +95,6 @@ def _row(variant: str, number: int, point: SpecialPoint) -> Row:
         "signature": " ".join(point.orbit.signature),
         "state": found.state.tolist(),
     }
-
-
-def write(path: Path, dataset: xr.Dataset, study: Study, title: str) -> None:
-    """Write a dataset with the attributes of its study; the same input gives the same bytes."""
-    stated = {
-        "Conventions": "CF-1.11",
-        "title": f"{study.title}: {title}",
-        **casefile.common_attributes(study.pair),
-        "history": f"gearmesh: computed for the study {study.name}",
-    }
-    packed = {
-        name: {"zlib": True, "complevel": 1}
-        for name, variable in dataset.variables.items()
-        if variable.dtype.kind in "fi" and variable.dims
-    }
-    with replacing(path) as temporary:
-        made = dataset.assign_attrs({**dataset.attrs, **stated})
-        made.to_netcdf(temporary, engine="netcdf4", format="NETCDF4", encoding=packed)
 
 
 def joined(tables: Iterable[xr.Dataset]) -> xr.Dataset:
