@@ -67,6 +67,7 @@ class Project:
         linked : bool
             Share the files of its results: quicker, for tests that only plan.
         """
+        folder.mkdir(parents=True)
         for source in self.folder.iterdir():
             shared = linked and source.name in ("results", ".snakemake")
             if source.is_dir():
