@@ -28,7 +28,9 @@ def test_findings_survive_their_file(tmp_path):
 def test_the_committed_findings_are_those_of_the_ledger(root):
     found = table.read(root / layout.IDENTIFIED)
     settings = load_settings(root / SETTINGS)
-    tested = [claim.id for claim in load_ledger(root / paths.CLAIMS) if claim.figure != "printed"]
+    ledger = load_ledger(root / paths.CLAIMS)
+    tested = [claim.id for claim in ledger if claim.figure != "printed"]
+    tested.remove("F3.4b")  # another reading of F3.4 is no further evidence
     assert list(found["claims"]) == tested
     assert found["samples"] == {name: d.points for name, d in settings.designs.items()}
     assert found["recovery"]["recovered"] >= 0.9 * found["recovery"]["papers"]

@@ -81,6 +81,7 @@ MISSING = {
     "largest_rise": dict.fromkeys(LUBRICANT),
     "loss_gained": {name: {"first": None, "second": None} for name in LUBRICANT},
     "maxima_spread": {name: {"below": None, "above": None} for name in LUBRICANT},
+    "band": {name: {"smooth": None, "growth": None} for name in LUBRICANT},
     "strobe_spread": {name: {"0.60": None, "1.05": None, "1.20": None} for name in LUBRICANT},
     "largest_step": {name: {"nu": None, "step": None} for name in fig2.IN_MATERIAL},
     "jumps": {"b-material": [], "b-both": []},

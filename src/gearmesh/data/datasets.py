@@ -17,7 +17,7 @@ import netCDF4
 import numpy as np
 import xarray as xr
 
-from gearmesh.data import batches, casefile, writing
+from gearmesh.data import batches, casefile, classic, writing
 from gearmesh.data.batches import Content
 from gearmesh.data.casefile import FIELDS, LOAD_FIELDS, MISSING, Field
 from gearmesh.errors import InputError
@@ -52,6 +52,7 @@ def open_dataset(path: Path | str) -> xr.Dataset:
         If it is missing or damaged.
     """
     try:
+        classic.refuse_damage(path)
         with xr.open_dataset(path, engine="netcdf4") as dataset:
             found = dataset.load()
     except (OSError, ValueError, RuntimeError):

@@ -9,6 +9,7 @@ from matplotlib import style
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from gearmesh.data import classic
 from gearmesh.data.writing import replacing
 from gearmesh.errors import InputError
 from gearmesh.interface.spectra import spectrum
@@ -127,7 +128,7 @@ def read_run(path: Path) -> xr.Dataset:
         If it is no such file.
     """
     try:
-        path.stat()
+        classic.refuse_damage(path)
         with xr.open_dataset(path) as file:
             run = file.load()
     except OSError as error:

@@ -59,6 +59,7 @@ def band(
         `below` and `above`: median spread in ⟨0.6; 0.8⟩ without the first jump, and from 1.1 on;
         `lowest`: median of `low` in ⟨0.6; 0.8⟩ without the jumps;
         `smooth`: share of the steps in ν_s over which both edges change by at most `EDGE_STEP`;
+        not-a-number if no two of the frequencies are a step apart;
         `growth`: greatest maximum near the first jump over the median elsewhere.
     """
     near = (nu > NEAR_FIRST_JUMP[0]) & (nu < NEAR_FIRST_JUMP[1])
@@ -70,7 +71,7 @@ def band(
         "below": float(np.median(spread[outside])),
         "above": float(np.median(spread[nu >= RANGES[1][0]])),
         "lowest": float(np.median(low[band])),
-        "smooth": float((steps <= EDGE_STEP).mean()),
+        "smooth": float((steps <= EDGE_STEP).mean()) if steps.size else np.nan,
         "growth": float(high[near].max() / np.median(high[band])),
     }
 
