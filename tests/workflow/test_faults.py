@@ -245,6 +245,9 @@ def test_a_case_that_fails_stops_nothing_else(fresh):
         "damping_length": "1e-6 mm",
         "reduced_mass": "1e-9 N s^2/mm",
         "static_deflection": "10 mm",
+        # Few mesh periods, for every one of them takes two million steps.
+        "teeth": "3",
+        "revolutions": "1",
     }
     lines = "".join(f"{name}: {value}\n" for name, value in stated.items())
     fresh.edit("config/tiny.yaml", "title: A few cases\n", f"title: A few cases\n{lines}")
