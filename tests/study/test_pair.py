@@ -280,3 +280,11 @@ def test_a_study_of_ones_own_inherits_no_false_statement(root, tmp_path, pair):
         assert parameter.reason == listed(pair)[name].reason
     assert study.pair.body_mass == 1800.0
     assert study.pair.stiffness_mean == pytest.approx(5.2e5 * (0.65 + 0.35 * 0.62))
+
+
+@pytest.mark.parametrize("name", ["profile_deviation", "stiffness_fourier"])
+def test_harmonics_are_limited_in_one_line(pair, name):
+    harmonic = ["1 um", "0 um"] if name == "profile_deviation" else [0.001, 0.0]
+    assert len(getattr(pair.replace(**{name: [harmonic] * 100}), name)) == 100
+    with pytest.raises(InputError, match=f"{name}: found a list of 2000; allowed are at most 100"):
+        pair.replace(**{name: [harmonic] * 2000})

@@ -23,6 +23,10 @@ _STIFFNESSES = (
 )
 
 
+MOST_HARMONICS = 100
+"""Each harmonic shortens the steps of the solver: a run with 2,000 would take many minutes."""
+
+
 class Parameters(Section):
     """The declared parameters, in the order in which they are listed.
 
@@ -96,9 +100,16 @@ class Parameters(Section):
         *("mm", "f", "(cos, sin) amplitudes of harmonics 1, 2, … of the mesh frequency"),
         *(-10.0, 10.0),
         default=(),
+        max_length=MOST_HARMONICS,
     )
     stiffness_harmonics: int = quantity(
-        *("1", "n", "terms of eq. (4) that are kept; 0 is the closed rectangular wave", 0, 100),
+        *(
+            "1",
+            "n",
+            "terms of eq. (4) that are kept; 0 is the closed rectangular wave",
+            0,
+            MOST_HARMONICS,
+        ),
         default=0,
     )
     bearing_stiffness_z: float | tuple[float, float] | None = quantity(
@@ -124,6 +135,7 @@ class Parameters(Section):
     stiffness_fourier: tuple[tuple[float, float], ...] = quantity(
         *("1", "U_n, V_n", "(cos, sin) amplitudes of C(t)/C_s, harmonics 1, 2, …", -10.0, 10.0),
         default=(),
+        max_length=MOST_HARMONICS,
     )
     stiffness_table: tuple[float, ...] = quantity(
         *("N/mm", "C(t)", "mesh stiffness at equal distances over a mesh period", 0.0, 1e9),
