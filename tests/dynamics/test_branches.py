@@ -27,9 +27,13 @@ def lubricant():
     return follow(find_orbit(problem(0.7, "c-lubricant", **HEAVY)), "nu", (0.6, 1.2))
 
 
-def test_a_branch_in_contact_has_no_special_points_but_the_flips_of_its_tongue():
-    branch = follow(find_orbit(problem(0.64, **FAR_BODIES)), "nu", (0.62, 0.7))
-    assert [point.kind for point in branch.special] == ["flip", "flip"]
+def test_a_branch_in_contact_has_the_flips_of_its_tongue_and_one_switching_point():
+    """Undamped, y rests at 1/C_min while C is least, if a half turn at C_max fills the pulse."""
+    begun = problem(0.64, **FAR_BODIES)
+    branch = follow(find_orbit(begun), "nu", (0.62, 0.7))
+    assert [point.kind for point in branch.special] == ["switching", "flip", "flip"]
+    expected = (begun.contact_ratio - 1.0) * np.sqrt(begun.stiffness_max)
+    assert branch.special[0].nu == pytest.approx(expected, abs=1e-9)
 
 
 def test_no_pair_of_special_points_hides_between_two_steps():

@@ -32,6 +32,7 @@ _NARROWEST_PIECE = 1e-11  # between two grazings, in which multipliers are teste
 _ROOT_WIDTH = 1e-13
 _LARGEST_VALUE = 1e-7  # of a test function at its root: more is a jump
 _LEAST_SLOPE = 1e-6  # of the parameter along a branch at both sides of a fold
+_SAME_SWITCHING = 1e-9  # distance in the parameter
 _SAME_PHASE = 0.2  # mesh periods between an extremum and the same one further on
 
 
@@ -74,7 +75,7 @@ def special_points(curve: Curve, left: Point, right: Point) -> list[tuple[str, P
     between the grazings and not across them.
     """
     inner = _inner_points(curve, left, right)
-    events = search(curve, left, right, _event_tests(left), inner)
+    events = _once(search(curve, left, right, _event_tests(left, right), inner))
     ends = [left, *(point for _, point in events), right]
     bifurcations = [
         found
@@ -84,6 +85,18 @@ def special_points(curve: Curve, left: Point, right: Point) -> list[tuple[str, P
     ]
     order = [*events, *bifurcations]
     return sorted(order, key=lambda item: float(left.tangent @ item[1].place))
+
+
+def _once(events: list[tuple[str, Point]]) -> list[tuple[str, Point]]:
+    """Leave out a second `switching` at a place: an even orbit turns at both switches at once."""
+    kept: list[tuple[str, Point]] = []
+    for kind, point in events:
+        again = kind == "switching" and any(
+            kind == other and abs(point.place[4] - known.place[4]) < _SAME_SWITCHING
+            for other, known in kept
+        )
+        kept += [] if again else [(kind, point)]
+    return kept
 
 
 def _inner_points(curve: Curve, left: Point, right: Point) -> Inner:
@@ -159,9 +172,21 @@ def _confirmed(
         return min(abs(left.tangent[4]), abs(right.tangent[4])) > _LEAST_SLOPE
     if kind == "torus":
         return _has_pair_on_the_unit_circle(point.orbit)
+    if kind == "switching":
+        return _turns_at_a_switch(point.orbit)
     if kind == "branch_point":
         return left.tangent[4] * right.tangent[4] > 0.0
     return True
+
+
+def _turns_at_a_switch(orbit: Orbit) -> bool:
+    """Return whether turning points appear or vanish where the velocity at a switch is 0.
+
+    They do if y'' has different signs before and after the switch. Where nothing is damped, y'' may
+    be 0 on one side. If the signs are equal, a turning point only passes the switch.
+    """
+    still = [s for s in stiffness_jumps(orbit) if abs(s[VELOCITY]) < _LARGEST_VALUE]
+    return any(s[BEFORE] * s[AFTER] < _LARGEST_VALUE for s in still)
 
 
 def _has_pair_on_the_unit_circle(orbit: Orbit) -> bool:
@@ -184,16 +209,20 @@ def flip_test(orbit: Orbit) -> float:
     return float(np.linalg.det(orbit.passage.jacobian + np.eye(4)))
 
 
-def _event_tests(point: Point) -> list[Test]:
-    """Return the tests for events that appear or vanish near a point of a branch."""
+def _event_tests(left: Point, right: Point) -> list[Test]:
+    """Return the tests for events that appear or vanish between two points of a branch."""
     tests: list[Test] = []
-    for time, _, kind in point.orbit.extrema:
-        phase = time / point.orbit.problem.period
+    for time, _, kind in left.orbit.extrema:
+        phase = time / left.orbit.problem.period
         tests.append(("grazing_front", _height_above(0.0, phase, kind)))
         tests.append(("grazing_back", _height_above(-1.0, phase, kind)))
-    for number, switch in enumerate(stiffness_jumps(point.orbit)):
-        if switch[BEFORE] * switch[AFTER] < 0.0:
-            tests.append(("switching", _velocity_at(number)))
+    turning = {
+        number
+        for point in (left, right)
+        for number, switch in enumerate(stiffness_jumps(point.orbit))
+        if switch[BEFORE] * switch[AFTER] < 0.0
+    }
+    tests += [("switching", _velocity_at(number)) for number in sorted(turning)]
     return tests
 
 
