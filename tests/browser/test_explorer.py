@@ -182,6 +182,10 @@ def test_hovering_tells_the_numbers_of_a_dot(explorer, smoke):
     explorer.select_option("#variant", "c-material")
     y = bifurcation.sel(variant="c-material").sel(nu=0.9, method="nearest")["extremum_y_rel"]
     top = float(y.max())
+    # The diagram of the variant is drawn in the next frame.
+    explorer.evaluate(
+        "new Promise(done => requestAnimationFrame(() => requestAnimationFrame(done)))"
+    )
     place = explorer.evaluate(
         "([nu, y]) => { const b = document.getElementById('diagram').getBoundingClientRect();"
         " const f = gearmesh.diagram.frame; return [b.left + f.toX(nu), b.top + f.toY(y)]; }",

@@ -258,11 +258,17 @@ class _Crate:
             name=job,
             description=f"Digest of code, parameters and files it was made of: {held.made_of}",
             instrument=_link(f"#stage-{stage}"),
-            object=[_link(name) for name in held.read],
-            result=[_link(name) for name in written],
+            object=_links(held.read),
+            result=_links(written),
             actionStatus="http://schema.org/CompletedActionStatus",
         )
 
 
 def _link(name: str) -> dict[str, str]:
     return {"@id": name}
+
+
+def _links(names: Iterable[str]) -> dict[str, str] | list[dict[str, str]]:
+    """Link several entities; RO-Crate wants a single one without a list around it."""
+    links = [_link(name) for name in names]
+    return links[0] if len(links) == 1 else links
