@@ -11,7 +11,7 @@ does not require, and the crate is dated as the version of the code is.
 
 import json
 import shutil
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
