@@ -2,7 +2,6 @@
 
 import base64
 import dataclasses
-import math
 import re
 import xml.etree.ElementTree as ElementTree
 from html.parser import HTMLParser
@@ -10,8 +9,7 @@ from urllib.parse import parse_qsl, urlsplit
 
 import nbformat
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
+from entries import claim
 
 from gearmesh.data import paths
 from gearmesh.data.paths import Places
@@ -22,8 +20,8 @@ from gearmesh.report import why
 from gearmesh.report.explorer import views
 from gearmesh.report.explorer.controls import CONTROLS
 from gearmesh.report.notebook_page import notebook_page
-from gearmesh.report.presentation import claims_table, expected, found, number, quantity, typeset
-from gearmesh.reproduction.claims import Entry, Evidence, load_ledger, write_entries
+from gearmesh.report.presentation import claims_table, typeset
+from gearmesh.reproduction.claims import Evidence, load_ledger, write_entries
 from gearmesh.reproduction.claims.checking import check_figure
 from gearmesh.reproduction.equations import EQUATIONS
 
@@ -62,21 +60,6 @@ class Page(HTMLParser):
         return " ".join(self.text.split())
 
 
-def claim(**changes) -> Entry:
-    given = {
-        "id": "F2.1",
-        "where": "Fig. 2",
-        "figure": "fig2",
-        "statement": "It jumps near ν_s = 0.66.",
-        "kind": "threshold",
-        "expected": 0.66,
-        "tolerance": 0.02,
-        "measured": 0.654321,
-        "status": "reproduced",
-    }
-    return Entry(**given | changes)
-
-
 @pytest.fixture(scope="module")
 def entries(root, study):
     """Return the whole ledger, with what the printed numbers give; the rest is not testable."""
@@ -92,7 +75,6 @@ def built(root, small_run, small_study, entries):
 
     What lies behind the curves is left out: `tests/workflow` has the report of a whole run.
     """
-    plan = small_study.plan.model_copy(update={"mechanisms": None})
     write_entries(small_run / PLACES.ledger, entries)
     for folder in ("workflow", "config"):
         (small_run / folder).symlink_to(root / folder)
@@ -106,9 +88,7 @@ def built(root, small_run, small_study, entries):
         (small_run / file).parent.mkdir(exist_ok=True)
         (small_run / file).write_text(f"<svg>{file.stem}</svg>")
     (small_run / PLACES.explorer).touch()
-    # Why it jumps takes results that only the pipeline makes.
     plan = small_study.plan.model_copy(update={"mechanisms": None})
-    small_study = dataclasses.replace(small_study, plan=plan)
     with pytest.MonkeyPatch.context() as patch:
         patch.chdir(small_run)
         report.write_report(dataclasses.replace(small_study, plan=plan), PLACES)
@@ -317,97 +297,3 @@ def test_captions_are_plain_text(root):
         text = file.read_text(encoding="utf-8")
         assert not re.search(r"[*`|<>\\]|\.\. |::", text), file.name
         assert text.endswith(".\n")
-
-
-@pytest.mark.parametrize(
-    ("value", "text"),
-    [
-        (0.66, "0.66"),
-        (-2.5, "−2.5"),
-        (328954.2, "328\u202f954"),
-        (400000, "400\u202f000"),
-        (19.7685, "19.7685"),
-        (5e-5, "5·10⁻⁵"),
-        (1.5e12, "1.5·10¹²"),
-        (0.0, "0"),
-        (float("nan"), "–"),
-    ],
-)
-def test_numbers_are_written_as_an_engineer_does(value, text):
-    assert number(value) == text
-
-
-@given(st.floats(min_value=-1e15, max_value=1e15).filter(lambda x: x == 0 or abs(x) > 1e-200))
-def test_a_written_number_is_the_number(value):
-    plain = str.maketrans("−⁻⁰¹²³⁴⁵⁶⁷⁸⁹", "--0123456789", "\u202f")
-    read = float(number(value).translate(plain).replace("·10", "e"))
-    assert read == pytest.approx(value, rel=1e-4)
-
-
-@pytest.mark.parametrize(
-    ("value", "unit", "text"),
-    [
-        (0.08, "mm", "0.08 mm"),
-        (math.pi / 9, "rad", "20°"),
-        (21, "1", "21"),
-        ((21, 34), "1", "21, 34"),
-        ((0.0, 0.0), "N*m*s/rad", "0 N m s/rad"),
-        ((), "mm", "none"),
-        (((0.001, 0.002), (0.0, 0.5)), "mm", "(0.001, 0.002), (0, 0.5) mm"),
-        (False, "1", "no"),
-        ("sqrt", "1", "sqrt"),
-    ],
-)
-def test_values_of_parameters_are_written_with_their_units(value, unit, text):
-    assert quantity(value, unit) == text
-
-
-@pytest.mark.parametrize(
-    ("value", "lines"),
-    [
-        (None, ["–"]),
-        (True, ["yes"]),
-        (0.654321, ["0.6543"]),
-        ({}, ["–"]),
-        ([[0.6, 0.7]], ["0.6, 0.7"]),
-        ({"nu_min": 0.78064, "D": None}, ["ν_min: 0.7806", "D: –"]),
-        ({"c-material": 1.0, "c-material-5x": 2.0}, ["c-material\u00a01, c-material-5x\u00a02"]),
-        ({"jump": {"b-both": 1.0}}, ["jump: b-both\u00a01"]),
-        ({"at": {"0.60": 1.0}}, ["at: 1\u00a0(0.60)"]),
-    ],
-)
-def test_what_was_measured_is_written_in_lines(value, lines):
-    assert found(value) == lines
-
-
-@pytest.mark.parametrize(
-    ("target", "tolerance", "lines"),
-    [
-        (0.66, 0.02, ["0.66 ± 0.02"]),
-        (2.0, 0.0, ["2"]),
-        ({"at_least": 0.8}, None, ["≥ 0.8"]),
-        ({"at_most": 0.02}, None, ["≤ 0.02"]),
-        ({"at_least": 0.8, "at_most": 0.9}, None, ["0.8 to 0.9"]),
-        ({"end": 0.64, "pairs": {"at_least": 1}}, 0.01, ["end: 0.64 ± 0.01", "pairs: ≥ 1"]),
-    ],
-)
-def test_what_is_expected_is_written_in_lines(target, tolerance, lines):
-    assert expected(claim(expected=target, tolerance=tolerance)) == lines
-
-
-@pytest.mark.parametrize(
-    ("text", "words"),
-    [
-        ("ν_s and C_max", "ν<sub>s</sub> and C<sub>max</sub>"),
-        ("Ω_s² = C_s/m_red", "Ω<sub>s</sub>² = C<sub>s</sub>/m<sub>red</sub>"),
-        ("a < b", "a &lt; b"),
-        ("time-course", "time-course"),
-    ],
-)
-def test_symbols_are_typeset(text, words):
-    assert typeset(text) == words
-
-
-def test_variants_are_written_with_the_symbols_of_the_paper():
-    text = typeset("c-material, c-material-5x, b-lubricant, d-both, a-conservative")
-    assert Page(str(text)).text == "c-□, c-□\u00a0(5k), b-•, d-×, a-○"
