@@ -72,10 +72,10 @@ class Curve:
         Mesh phase at which the state is taken. The state has a kink along the curve where it
         passes an end of a regime at this very phase, because damping jumps there.
     condition : callable, optional
-        Only with two parameters: a function that is 0 for the orbits of the curve.
+        A function of the orbit that is 0 along the curve. It is needed if two parameters vary.
     stretches : bool
-        Whether the only parameter is nu. It stretches the mesh period, and the integration gives
-        the derivative exactly.
+        Whether nu is the only parameter that varies. Then the integration itself gives the
+        derivative with respect to the mesh period, without differences.
     """
 
     family: Family

@@ -41,7 +41,7 @@ Six = Sequence[Number] | np.ndarray
 """Six coordinates or their rates; other numbers may stand in place of floats."""
 
 ROTATION_3, ROTATION_2, Y_3, Y_2, Z_3, Z_2 = range(6)
-"""Places of R_b3 phi_3, R_b2 phi_2, y_3, y_2, z_3, z_2 among the coordinates."""
+"""Indices of the coordinates R_b3 phi_3, R_b2 phi_2, y_3, y_2, z_3 and z_2."""
 
 
 @dataclass(frozen=True, slots=True)

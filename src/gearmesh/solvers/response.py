@@ -17,9 +17,11 @@ OK, STEP_LIMIT, DIVERGED, FRICTION_UNDEFINED = range(4)
 """Outcome of a run, as the compiled solvers return it."""
 
 STATUSES = ("ok", "step_limit", "diverged", "friction_undefined")
-"""Their names, as in `Response.status`. ``step_limit``: too many steps, because a rate of the
-problem is too high. ``diverged``: y is far beyond all lengths of the problem.
-``friction_undefined``: no sign of eq. (6) lasts (`gearmesh.model.friction`).
+"""Names of the statuses, as `Response.status` holds them.
+
+``step_limit``: the run needs too many steps, because a rate of the problem is too high.
+``diverged``: y is far larger than every length of the problem.
+``friction_undefined``: no sign of eq. (6) lasts (see `gearmesh.model.friction`).
 """
 
 LOOSENING = 100.0
