@@ -151,3 +151,11 @@ def test_the_library_imports_where_posix_modules_are_missing(tmp_path):
         "assert float(gm.simulate(gm.paper(), 'c-both', 0.7, revolutions=1).y_max) > 0\n"
     )
     subprocess.run([sys.executable, "-c", code], cwd=tmp_path, check=True, timeout=120)
+
+
+def test_what_a_run_of_a_sweep_has_no_extremum_for_is_none(pair):
+    """Runs with fewer extrema than the longest are filled with `none`, never with a minimum."""
+    ds = gm.sweep(pair, ["c-material"], [0.61, 0.9])
+    counted = ds.extremum_y.notnull().sum("extremum")
+    assert counted.min() < counted.max()
+    assert ((ds.extremum_kind == 0) == ds.extremum_y.isnull()).all()

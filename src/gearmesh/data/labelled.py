@@ -15,6 +15,7 @@ from gearmesh.data.casefile import (
     LOAD_FIELDS,
     Field,
     Record,
+    absent,
     attributes,
     record,
     variable_attributes,
@@ -26,7 +27,6 @@ from gearmesh.study.cases import Case
 from gearmesh.study.pair import Pair
 
 _FINAL_STATE = "final_state"
-_COUNTS = {"i1": -1, "i4": -1}
 
 
 def run_dataset(response: Response, pair: Pair, case: Case) -> xr.Dataset:
@@ -116,11 +116,11 @@ def grid_dataset(
 
 
 def _stacked(field: Field, rows: Sequence[np.ndarray]) -> np.ndarray:
-    """Stack rows of unequal length; whole numbers and flags are filled with -1."""
+    """Stack rows of unequal length, filled with what stands for no value."""
     if not field.dimension:
         return np.array(rows)
     longest = max(row.size for row in rows)
-    cells = np.full((len(rows), longest), _COUNTS.get(field.kind, np.nan), field.kind)
+    cells = np.full((len(rows), longest), absent(field), field.kind)
     for cell, row in zip(cells, rows, strict=True):
         cell[: row.size] = row
     return cells
