@@ -35,5 +35,5 @@ def draw(lyapunov: xr.Dataset) -> Figure:
     axes.set_xlabel("mesh frequency $\\nu_s$")
     axes.set_ylabel("Lyapunov exponent in $\\Omega_s$")
     axes.set_title("a ○  conservative")
-    axes.legend(loc="upper right", ncols=2)
+    figure.legend(loc="outside lower center", ncols=2)
     return figure

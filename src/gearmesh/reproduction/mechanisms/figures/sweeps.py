@@ -60,6 +60,8 @@ def draw(sweeps: xr.Dataset, branches: xr.Dataset) -> Figure:
     lines = [
         Line2D([], [], color=palette.PALE, label="stable orbit", **STYLES[1]),
         Line2D([], [], color=palette.PALE, label="unstable orbit", **STYLES[-1]),
+        Line2D([], [], color=palette.GREY, label="neutral orbit", **STYLES[0]),
+        Line2D([], [], color=palette.GREEN, label="orbit of period 2", **STYLES[1]),
     ]
-    figure.legend(handles=[*marks, *lines], loc="outside lower center", ncols=2)
+    figure.legend(handles=[*marks, *lines], loc="outside lower center", ncols=3)
     return figure
