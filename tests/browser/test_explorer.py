@@ -232,6 +232,24 @@ def test_the_tour_leads_through_its_views(explorer):
     assert len(seen) == stops.count()
 
 
+def test_a_stop_is_shown_however_soon_after_another_it_is_chosen(explorer):
+    """The address is written with a delay; what was chosen meanwhile must not be lost."""
+    shown = explorer.evaluate(
+        """async () => {
+            const links = [...document.querySelectorAll("[data-stop]")], lost = [];
+            for (let wait = 100; wait < 200; wait += 4) {
+                links[0].click();
+                await new Promise(done => setTimeout(done, wait));
+                links[2].click();
+                await new Promise(done => setTimeout(done, 250));
+                if (document.getElementById("stop-3").hidden) lost.push(wait);
+            }
+            return lost;
+        }"""
+    )
+    assert shown == []
+
+
 def test_the_tour_says_what_the_runs_show(explorer):
     """Each number in its texts: the motions at 0.75 and 0.79, and where the jump lies."""
     run = f"([nu, changes]) => ({RUN})(['c-lubricant', nu, changes])"

@@ -154,6 +154,10 @@ function listen() {
   on("save-png", "click", savePng);
   on("save-course", "click", () => save(fileName(".csv"), "text/csv", courseTable(result)));
   on("save-diagram", "click", () => save(fileName("-diagram.csv"), "text/csv", diagramTable(sweep)));
+  // A stop is shown at once: the address may still wait to be written for the view before.
+  for (const link of document.querySelectorAll("[data-stop]")) {
+    link.addEventListener("click", () => { readHash(link.hash); changed(); });
+  }
   window.addEventListener("hashchange", () => {
     if (location.hash !== hashOf()) { readHash(location.hash); changed(); }
   });
