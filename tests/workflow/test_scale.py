@@ -4,7 +4,7 @@ import signal
 from pathlib import Path
 
 import pytest
-from project import Project, end, wait_for
+from project import Project
 
 ATLAS = """\
 base: atlas.yaml
@@ -30,9 +30,10 @@ def finished(project: Project) -> dict[Path, int]:
 def test_a_killed_atlas_keeps_its_batches_and_ends_with_the_same_bytes(atlas, tmp_path):
     undisturbed = atlas.copy(tmp_path / "undisturbed")
     assert undisturbed.run("data").returncode == 0
-    process = atlas.start("data")
-    wait_for(lambda: len(finished(atlas)) >= 3, process)
-    end(process, signal.SIGKILL)
+    run = atlas.start("data")
+    run.wait_for(lambda: len(finished(atlas)) >= 3)
+    run.send(signal.SIGKILL)
+    run.wait()
     before = finished(atlas)
     assert 3 <= len(before) < 8
     again = atlas.run("data")
