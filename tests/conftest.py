@@ -30,11 +30,19 @@ SLOW = (
 """Beginnings of the paths of tests that `make test-fast` leaves out."""
 
 
+LONGEST = ("workflow", "docs/test_printed", "identification/test_samples", "solvers")
+"""Those that take longest start first, so that no process has to wait for another at the end."""
+
+
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
     for item in items:
-        place = item.path.relative_to(ROOT / "tests").as_posix()
-        if place.startswith(SLOW):
+        if _place(item).startswith(SLOW):
             item.add_marker(pytest.mark.slow)
+    items.sort(key=lambda item: not _place(item).startswith(LONGEST))
+
+
+def _place(item: pytest.Item) -> str:
+    return item.path.relative_to(ROOT / "tests").as_posix()
 
 
 @pytest.fixture(scope="session")

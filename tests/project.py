@@ -1,5 +1,6 @@
 """A copy of the project in which the real pipeline runs, for tests that edit, break and kill."""
 
+import functools
 import hashlib
 import os
 import shutil
@@ -10,6 +11,10 @@ from pathlib import Path
 from subprocess import CompletedProcess
 
 from snakemake_process import PATIENCE, Run
+
+import gearmesh as gm
+from gearmesh.model.variants import variant
+from gearmesh.solvers.simulation import simulate
 
 ROOT = Path(__file__).parents[1]
 COPIED = (
@@ -25,6 +30,17 @@ strong_damping: {variant: c-material, factor: 5, nu: {start: 0.6, stop: 0.8, ste
 time_courses: null
 """
 """A study of 14 cases, for tests that do without figures."""
+
+
+@functools.cache
+def compile_solvers() -> None:
+    """Compile all that the solvers run, so that no copy of the project has to."""
+    pair = gm.paper()
+    run_out = pair.replace(eccentricity="5 um")
+    simulate([pair.problem(variant("c-both"), 0.7)], estimate_errors=False)
+    gm.simulate(pair, "c-both", 0.7)
+    gm.simulate(run_out, "c-both", 0.7, revolutions=1)
+    gm.find_orbit(pair, "c-lubricant", 0.9)
 
 
 class Project:
@@ -48,6 +64,7 @@ class Project:
     @classmethod
     def create(cls, folder: Path, config: str) -> "Project":
         """Copy the working tree, compiled code included."""
+        compile_solvers()
         folder.mkdir(parents=True)
         for name in COPIED:
             source = ROOT / name

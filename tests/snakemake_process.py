@@ -87,5 +87,6 @@ def _snakemake(
     for stream in (sys.stdout, sys.stderr):
         os.dup2(printed, stream.fileno())
     sys.path[:0] = [str(folder), *environment["PYTHONPATH"].split(os.pathsep)]
+    sys.dont_write_bytecode = False  # the server has it from whoever runs the tests
     sys.argv = ["snakemake", *arguments]
     runpy.run_module("snakemake", run_name="__main__")
