@@ -163,7 +163,8 @@ def double_period(point: SpecialPoint, family: Family | None = None) -> Orbit:
     ((parameter, value),) = point.parameters.items()
     family = family or field_family(point.orbit.problem, parameter)
     single = at_phase(point.orbit, clear_phase(point.orbit))
-    curve = Curve(family, 2 * single.periods, (1.0,), single.problem.initial_phase)
+    phase, stretched = single.problem.initial_phase, stretches(family, value)
+    curve = Curve(family, 2 * single.periods, (1.0,), phase, stretches=stretched)
     across = np.linalg.svd(single.passage.jacobian + np.eye(4))[2][-1]
     normal = np.append(across, 0.0)
     place = np.append(single.state, value) + _AMPLITUDE * normal
