@@ -141,7 +141,8 @@ def repeats_after(problem: Problem) -> int | None:
     if problem.has_run_out or any(terms.torsional_damping):
         return None
     harmonics = (*terms.torque_harmonics_3, *terms.torque_harmonics_2, *terms.backlash_harmonics)
-    if not terms.tooth_factors and all(float(one.order).is_integer() for one in harmonics):
+    of_teeth = terms.tooth_factors or terms.pitch_errors_3 or terms.pitch_errors_2
+    if not of_teeth and all(float(one.order).is_integer() for one in harmonics):
         return 1
     wheel_3, wheel_2 = problem.both_wheels
     common = math.lcm(wheel_3.teeth, wheel_2.teeth)
