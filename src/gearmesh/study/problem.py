@@ -3,9 +3,12 @@
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
-from gearmesh.model.motion import state_at
+import numpy as np
+
+from gearmesh.model.motion import state_at, state_of, static_equilibrium
 from gearmesh.model.problem import GeneralTerms, Problem, ToothFactor, Wheel
 from gearmesh.model.variants import Variant
+from gearmesh.study.flanks import flanks_of
 from gearmesh.study.relative import MM_PER_M
 from gearmesh.study.schema import of_wheels
 
@@ -48,6 +51,13 @@ def problem_of(pair: "Pair", variant: Variant, nu: float) -> Problem:
         wheels=None if _alike(wheel_3, wheel_2) else (wheel_3, wheel_2),
         terms=_general_terms(pair),
     )
+    if pair.initial_coordinates or pair.initial_rates:
+        q, v = static_equilibrium(problem)
+        if pair.initial_coordinates:
+            q = np.array(pair.initial_coordinates) / y_st
+        if pair.initial_rates:
+            v = np.array(pair.initial_rates) / y_st
+        return replace(problem, initial_state=state_of(problem, q, v))
     if pair.initial_displacement is None and pair.initial_velocity == 0.0:
         return problem  # at rest in static equilibrium
     y = 1.0 if pair.initial_displacement is None else pair.initial_displacement / y_st
@@ -106,11 +116,14 @@ def _general_terms(pair: "Pair") -> GeneralTerms:
         ),
         restoring_2=pair.restoring_2,
         restoring_3=pair.restoring_3,
+        restoring_power=pair.restoring_power,
         non_adhesive=pair.non_adhesive,
         damping_power={"none": 0.0, "sqrt": 0.5, "linear": 1.0}[pair.damping_follows_stiffness],
         backlash_harmonics=tuple(
             wave.harmonic(teeth, pair.static_deflection) for wave in pair.backlash_harmonics
         ),
+        backlash_follows_centres=pair.backlash_follows_centres,
+        **flanks_of(pair),
     )
 
 
