@@ -1,15 +1,12 @@
 """Classic NetCDF files (64-bit offset), which every reader of NetCDF opens.
 
-Such a file is a header with dimensions, attributes and variables, and then the values one after
-the other. It is written here, in a fifth of the time that SciPy needs and less than a twentieth of
-what the NetCDF library needs; SciPy reads it. The format has no compression, no strings and no
-64-bit integers; `gearmesh.data.datasets` needs these.
+SciPy writes one in a fifth of the time that the NetCDF library needs, and in half the space. The
+format has no compression, no strings and no 64-bit integers; `gearmesh.data.datasets` needs these.
 """
 
 import contextlib
-import functools
-import struct
-from collections.abc import Iterator, Mapping, Sequence
+import io
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -22,10 +19,7 @@ from gearmesh.errors import InputError
 if TYPE_CHECKING:
     from scipy.io import netcdf_file
 
-_64_BIT_OFFSET = b"CDF\x02"
-_DIMENSION, _VARIABLE, _ATTRIBUTE = 10, 11, 12
-_TEXT = 2
-_TYPES = {"i1": 1, "i2": 3, "i4": 4, "f4": 5, "f8": 6}
+_64_BIT_OFFSET = 2
 
 
 @dataclass(frozen=True, slots=True)
@@ -66,76 +60,28 @@ def write(
     InputError
         If it cannot be written; the message is one line with the reason.
     """
-    content = _encoded(attributes, variables)
-    with writing.replacing(path) as temporary:
-        temporary.write_bytes(content)
+    from scipy.io import netcdf_file  # here, because few of the jobs need it
+
+    content = io.BytesIO()
+    file = netcdf_file(content, "w", version=_64_BIT_OFFSET)
+    _state(file, attributes)
+    for name, variable in variables.items():
+        for dimension, size in zip(variable.dimensions, variable.values.shape, strict=True):
+            if dimension not in file.dimensions:
+                file.createDimension(dimension, size)
+        created = file.createVariable(name, variable.values.dtype, variable.dimensions)
+        created.data[...] = variable.values
+        _state(created, variable.attributes)
+    file.flush()
+    with writing.replacing(path) as temporary, content.getbuffer() as whole:
+        temporary.write_bytes(whole)
+    content.close()  # or closing `file` would write everything once more
 
 
-def _encoded(attributes: Mapping[str, str | float], variables: Mapping[str, Variable]) -> bytes:
-    """Return the bytes of a file, which the specification of the format describes in full."""
-    lengths: dict[str, int] = {}
-    for variable in variables.values():
-        lengths.update(zip(variable.dimensions, variable.values.shape, strict=True))
-    places = {dimension: place for place, dimension in enumerate(lengths)}
-    values = [_value_bytes(variable.values) for variable in variables.values()]
-    described = [
-        _name(name)
-        + _integers(len(variable.dimensions), *(places[name] for name in variable.dimensions))
-        + _attribute_list(variable.attributes)
-        + _integers(_type(variable.values), len(content))
-        for (name, variable), content in zip(variables.items(), values, strict=True)
-    ]
-    header = (
-        _64_BIT_OFFSET
-        + _integers(0)  # there are no records
-        + _list(_DIMENSION, [_name(name) + _integers(length) for name, length in lengths.items()])
-        + _attribute_list(attributes)
-    )
-    offset = len(header) + len(_list(_VARIABLE, described)) + len(described) * struct.calcsize("q")
-    for i, content in enumerate(values):
-        described[i] += struct.pack(">q", offset)
-        offset += len(content)
-    return b"".join([header, _list(_VARIABLE, described), *values])
-
-
-def _list(tag: int, items: Sequence[bytes]) -> bytes:
-    return _integers(tag if items else 0, len(items)) + b"".join(items)
-
-
-def _attribute_list(attributes: Mapping[str, Any]) -> bytes:
-    return _list(
-        _ATTRIBUTE, [_name(name) + _attribute(value) for name, value in attributes.items()]
-    )
-
-
-def _attribute(value: Any) -> bytes:
-    if isinstance(value, str):
-        return _integers(_TEXT) + _name(value)
-    array = np.asarray(value)
-    return _integers(_type(array), array.size) + _value_bytes(array)
-
-
-@functools.lru_cache(maxsize=2**10)
-def _name(text: str) -> bytes:
-    content = text.encode()
-    return _integers(len(content)) + _padded(content)
-
-
-def _value_bytes(values: np.ndarray) -> bytes:
-    return _padded(values.astype(values.dtype.newbyteorder(">")).tobytes())
-
-
-def _type(values: np.ndarray) -> int:
-    return _TYPES[values.dtype.str[1:]]
-
-
-def _padded(content: bytes) -> bytes:
-    return content + bytes(-len(content) % 4)
-
-
-@functools.lru_cache(maxsize=2**10)
-def _integers(*values: int) -> bytes:
-    return struct.pack(f">{len(values)}i", *values)
+def _state(place: Any, attributes: Mapping[str, Any]) -> None:
+    """Give attributes to a file or a variable; SciPy would make a float single."""
+    for name, value in attributes.items():
+        setattr(place, name, value.encode() if isinstance(value, str) else np.asarray(value))
 
 
 @contextlib.contextmanager
