@@ -13,17 +13,10 @@ from typing import Any
 
 from mutation.processes import Task, race
 
-OPTIONS = [
-    "-qq",
-    "-s",
-    "-n",
-    "0",
-    "--disable-warnings",
-    "-p",
-    "no:cacheprovider",
-    "-o",
-    "timeout=0",
-]
+OPTIONS = (
+    *("-qq", "-s", "-n", "0", "--disable-warnings", "--assert=plain", "--tb=native"),
+    *("-p", "no:cacheprovider", "-o", "timeout=0", "--hypothesis-profile=mutants"),
+)
 _HOURS = 36000
 
 
@@ -104,7 +97,11 @@ class _Collected:
 def collect(places: Sequence[str], use: Callable[[Any], None]) -> int:
     """Collect tests and hand over the session; return the status of pytest."""
     import pytest
+    from hypothesis import Phase, settings
 
+    # An example that fails is enough; the smallest one is of no interest.
+    phases = (Phase.explicit, Phase.generate)
+    settings.register_profile("mutants", deadline=None, derandomize=True, phases=phases)
     return int(pytest.main([*OPTIONS, *places], [_Collected(use)]))
 
 
