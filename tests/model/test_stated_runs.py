@@ -72,12 +72,12 @@ def test_what_is_not_stated_is_absent():
     assert one.initial_state is None and one.wheels is None
     terms = one.terms
     assert terms == GeneralTerms()
-    assert terms.torsional_damping == (0.0, 0.0)
-    assert (terms.restoring_2, terms.restoring_3, terms.damping_power) == (0.0, 0.0, 0.0)
-    assert not terms.non_adhesive
+    neutral = {"restoring_power": 1.0}
+    pairs = ("torsional_damping", "tip_relief", "tip_relief_length")
+    neutral |= dict.fromkeys(pairs, (0.0, 0.0))
     for field in fields(terms):
-        if field.name != "torsional_damping":
-            assert not getattr(terms, field.name), field.name
+        absent = neutral.get(field.name, () if "tuple" in field.type else 0)
+        assert getattr(terms, field.name) == absent, field.name
     assert Mode(1, 0.5) == Mode(1, 0.5, 1, 1, False)
     assert elastic_force(2.0, 1.5, NORMAL_MESH, 4.0) == 3.0
     assert elastic_force(2.0, 1.5, NORMAL_MESH, 4.0, 0.5) == 6.0
