@@ -76,7 +76,7 @@ def test_what_is_not_stated_is_absent():
     pairs = ("torsional_damping", "tip_relief", "tip_relief_length")
     neutral |= dict.fromkeys(pairs, (0.0, 0.0))
     for field in fields(terms):
-        absent = neutral.get(field.name, () if "tuple" in field.type else 0)
+        absent = neutral.get(field.name, () if "tuple" in str(field.type) else 0)
         assert getattr(terms, field.name) == absent, field.name
     assert Mode(1, 0.5) == Mode(1, 0.5, 1, 1, False)
     assert elastic_force(2.0, 1.5, NORMAL_MESH, 4.0) == 3.0
