@@ -50,12 +50,17 @@ def changes(source: str) -> list[Change]:
     lines = source.splitlines()
     found = []
     for node, field, index, statement in _places(ast.parse(source)):
-        at = node.ifs[index] if field == "filter" else node
+        at = node.ifs[index] if field == "filter" else getattr(node, "test", node)
         which = f" {index + 1}" if index else ""
         line = lines[at.lineno - 1].strip()
-        what = f"{at.lineno}:{at.col_offset + 1}: {line} [{field}{which}]"
+        what = f"{at.lineno}:{at.col_offset + 1}: {line} [{field}{which}, {_code(at)}]"
         found.append(Change(what, _lines(statement, at)))
     return found
+
+
+def _code(node: ast.AST) -> str:
+    code = ast.unparse(node)
+    return code if len(code) <= 40 else f"{code[:18]} … {code[-18:]}"
 
 
 def changed(source: str, number: int) -> ast.Module:
