@@ -95,7 +95,10 @@ def _places(tree: ast.AST) -> Iterator[tuple[ast.AST, str, int, ast.AST]]:
 
 
 def _spared(tree: ast.AST) -> Iterator[ast.AST]:
-    """Yield what changes no result: decorators, annotations, messages of errors, zip(strict=)."""
+    """Yield what changes no result.
+
+    These are decorators, annotations and their imports, messages of errors, and `strict` of zip.
+    """
     for node in ast.walk(tree):
         yield from getattr(node, "decorator_list", ())
         for field in ("returns", "annotation"):
@@ -104,6 +107,8 @@ def _spared(tree: ast.AST) -> Iterator[ast.AST]:
         if isinstance(node, ast.Raise) and node.exc:
             yield node.exc
         if isinstance(node, ast.keyword) and node.arg == "strict":
+            yield node
+        if isinstance(node, ast.If) and ast.unparse(node.test) == "TYPE_CHECKING":
             yield node
 
 
