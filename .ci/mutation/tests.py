@@ -13,7 +13,17 @@ from typing import Any
 
 from mutation.processes import Task, race
 
-OPTIONS = ["-q", "-s", "-n", "0", "-p", "no:cacheprovider", "-o", "timeout=0"]
+OPTIONS = [
+    "-qq",
+    "-s",
+    "-n",
+    "0",
+    "--disable-warnings",
+    "-p",
+    "no:cacheprovider",
+    "-o",
+    "timeout=0",
+]
 _HOURS = 36000
 
 

@@ -150,6 +150,7 @@ def test_y_of_a_state_is_the_sum_of_both_motions_of_the_reduced_system():
 def test_a_state_of_the_reduced_system_is_shared_as_the_bearings_yield():
     one = replace(ECCENTRIC, initial_state=State(1.3, 0.7, -0.9, 0.4))
     q, v = motion.start(one)
+    assert q.shape == v.shape == (6,)
     pulls = motion.bearing_pulls(one, q, np.zeros(6))
     assert pulls[0] == pytest.approx(-pulls[1])
     assert q[Y_3] - q[Y_2] == pytest.approx(-0.9)
