@@ -11,10 +11,10 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from gearmesh.dynamics.orbits import LARGEST_RESIDUAL, ROUNDED, Orbit
+from gearmesh.dynamics.orbits import LARGEST_RESIDUAL, ROUNDED
+from gearmesh.dynamics.shots import Shot
 from gearmesh.errors import NoOrbit
 from gearmesh.model.problem import Problem
-from gearmesh.solvers.reduced.period_map import advance, passage
 
 Family = Callable[..., Problem]
 """The problem at the values of the parameters."""
@@ -22,7 +22,6 @@ Family = Callable[..., Problem]
 _MOST_CORRECTIONS = 12
 _DIFFERENCE = 1e-5
 _SHORTEST_STEP = 1e-7
-_PLACES = 64
 _LEAST_ALIGNMENT = 0.97  # cosine of the angle between neighbouring tangents
 _LARGEST_CORRECTION = 0.3  # of a step
 
@@ -33,23 +32,28 @@ class Point:
 
     Attributes
     ----------
-    place : ndarray, shape (4 + m,)
-        The state, and the m parameters in units of the curve.
+    place : ndarray, shape (k + m,)
+        The k numbers of the state, and the m parameters in units of the curve.
     values : tuple of float
         The parameters.
-    tangent : ndarray, shape (4 + m,)
+    tangent : ndarray, shape (k + m,)
         Unit tangent of the curve.
     determinant : float
         Determinant of the Jacobian of P^n(x) - x (and of the condition) in state and parameters,
         bordered by the tangent.
-    orbit : Orbit
+    orbit : Shot
     """
 
     place: np.ndarray
     values: tuple[float, ...]
     tangent: np.ndarray
     determinant: float
-    orbit: Orbit
+    orbit: Shot
+
+    @property
+    def slope(self) -> float:
+        """Change of the first parameter along the tangent, in units of the curve."""
+        return float(self.tangent[self.orbit.state.size])
 
     def reversed(self) -> "Point":
         """Return the same point, seen in the other direction along the curve."""
@@ -71,6 +75,8 @@ class Curve:
     phase : float
         Mesh phase at which the state is taken. The state has a kink along the curve where it
         passes an end of a regime at this very phase, because damping jumps there.
+    like : Shot
+        Any motion of the solver that integrates those along the curve.
     condition : callable, optional
         A function of the orbit that is 0 along the curve. It is needed if two parameters vary.
     stretches : bool
@@ -82,7 +88,8 @@ class Curve:
     periods: int
     units: tuple[float, ...]
     phase: float
-    condition: Callable[[Orbit], float] | None = None
+    like: Shot
+    condition: Callable[[Shot], float] | None = None
     stretches: bool = False
 
     def point(self, place: np.ndarray, normal: np.ndarray, along: np.ndarray) -> Point:
@@ -90,8 +97,8 @@ class Curve:
 
         Parameters
         ----------
-        place, normal : ndarray, shape (4 + m,)
-        along : ndarray, shape (4 + m,)
+        place, normal : ndarray, shape (k + m,)
+        along : ndarray, shape (k + m,)
             Direction that the tangent follows.
 
         Raises
@@ -128,7 +135,7 @@ class Curve:
         place = point.place + length * point.tangent
         return self._with_tangent(place, self._orbit(place), point.tangent)
 
-    def _with_tangent(self, place: np.ndarray, orbit: Orbit, along: np.ndarray) -> Point:
+    def _with_tangent(self, place: np.ndarray, orbit: Shot, along: np.ndarray) -> Point:
         gradients = self._gradients(place, orbit)
         tangent = np.linalg.svd(gradients)[2][-1]
         if tangent @ along < 0.0:
@@ -136,23 +143,23 @@ class Curve:
         determinant = float(np.linalg.det(np.vstack([gradients, tangent])))
         return Point(place, self._values(place), tangent, determinant, orbit)
 
-    def at(self, orbit: Orbit, values: tuple[float, ...]) -> Point:
+    def at(self, orbit: Shot, values: tuple[float, ...]) -> Point:
         """Return the point near `orbit` at a value of the first parameter, or near several.
 
         Its tangent points to more of the first parameter.
         """
-        up = np.zeros(4 + len(values))
-        up[4] = 1.0
+        up = np.zeros(orbit.state.size + len(values))
+        up[orbit.state.size] = 1.0
         return self.point(np.append(orbit.state, np.divide(values, self.units)), up, up)
 
     def moved_to(self, phase: float, point: Point) -> tuple["Curve", Point]:
         """Return the curve with its state taken at another phase, and a point on it."""
         other = replace(self, phase=phase)
         near = self.step(point, _DIFFERENCE)
-        here, there = (at_phase(one.orbit, phase).state for one in (point, near))
-        along = np.append((there - here) / _DIFFERENCE, point.tangent[4:])
+        here, there = (one.orbit.at_phase(phase).state for one in (point, near))
+        along = np.append((there - here) / _DIFFERENCE, point.tangent[here.size :])
         along /= np.linalg.norm(along)
-        return other, other.point(np.append(here, point.place[4:]), along, along)
+        return other, other.point(np.append(here, point.place[here.size :]), along, along)
 
     def step(self, point: Point, length: float) -> Point:
         """Return the point one step ahead along the tangent."""
@@ -181,23 +188,20 @@ class Curve:
             length *= 0.5
         raise NoOrbit(reason)
 
-    def _orbit(self, place: np.ndarray) -> Orbit:
+    def _orbit(self, place: np.ndarray) -> Shot:
         problem = self.family(*self._values(place))
-        if problem.initial_phase != self.phase or problem.initial_state is not None:
-            problem = replace(problem, initial_phase=self.phase, initial_state=None)
-        moved = passage(problem, place[:4], self.periods)
-        if moved.status != "complete":
-            raise NoOrbit(f"the motion ends with {moved.status}")
-        return Orbit(problem, self.periods, place[:4], moved)
+        if problem.initial_phase != self.phase:
+            problem = replace(problem, initial_phase=self.phase)
+        return self.like.shot(problem, place[: -len(self.units)], self.periods)
 
     def _values(self, place: np.ndarray) -> tuple[float, ...]:
-        return tuple(float(value) for value in place[4:] * self.units)
+        return tuple(float(value) for value in place[-len(self.units) :] * self.units)
 
-    def _defect(self, orbit: Orbit) -> np.ndarray:
-        defect = orbit.passage.end - orbit.state
+    def _defect(self, orbit: Shot) -> np.ndarray:
+        defect = orbit.defect
         return defect if self.condition is None else np.append(defect, self.condition(orbit))
 
-    def _gradients(self, place: np.ndarray, orbit: Orbit, rough: bool = False) -> np.ndarray:
+    def _gradients(self, place: np.ndarray, orbit: Shot, rough: bool = False) -> np.ndarray:
         """Return the gradients of the defect, by differences where the integration gives none.
 
         They are one-sided if rough: good enough for the direction of Newton's steps, which does not
@@ -205,48 +209,26 @@ class Curve:
         """
         gradients = np.zeros((len(place) - 1, len(place)))
         self._differentiate(orbit, gradients)
-        if self.stretches:
+        if self.stretches and orbit.stretched is not None:
             return gradients
-        for i in range(4 if self.condition is None else 0, len(place)):
+        k = orbit.state.size
+        for i in range(k if self.condition is None else 0, len(place)):
             away = _DIFFERENCE * np.eye(len(place))[i]
             ahead = self._defect(self._orbit(place + away))
             behind = self._defect(orbit if rough else self._orbit(place - away))
             difference = (ahead - behind) / (_DIFFERENCE if rough else 2.0 * _DIFFERENCE)
-            gradients[0 if i >= 4 else 4 :, i] = difference[0 if i >= 4 else 4 :]
+            gradients[0 if i >= k else k :, i] = difference[0 if i >= k else k :]
         return gradients
 
-    def _differentiate(self, orbit: Orbit, gradients: np.ndarray) -> None:
+    def _differentiate(self, orbit: Shot, gradients: np.ndarray) -> None:
         """Write the gradients that the integration gives."""
-        gradients[:4, :4] = orbit.passage.jacobian - np.eye(4)
-        if self.stretches:
-            gradients[:, 4] = orbit.passage.stretched * (-self.units[0] / orbit.problem.nu)
+        k = orbit.state.size
+        gradients[:k, :k] = orbit.gradient
+        if self.stretches and orbit.stretched is not None:
+            gradients[:, k] = orbit.stretched * (-self.units[0] / orbit.problem.nu)
 
 
 def stretches(family: Family, value: float) -> bool:
     """Return whether the only parameter of a family is nu."""
     here, there = family(value), family(1.001 * value)
     return here.nu == value and there == replace(here, nu=1.001 * value)
-
-
-def at_phase(orbit: Orbit, phase: float) -> Orbit:
-    """Return an orbit with its state taken at another mesh phase."""
-    share = (phase - orbit.problem.initial_phase) % 1.0
-    if share == 0.0:
-        return orbit
-    state = advance(orbit.problem, orbit.state, share)
-    problem = replace(orbit.problem, initial_phase=phase)
-    return Orbit(problem, orbit.periods, state, passage(problem, state, orbit.periods))
-
-
-def clear_phase(orbit: Orbit) -> float:
-    """Return a mesh phase at which the orbit is far from the ends of its regimes.
-
-    The phase of the orbit's state is kept if it is at least half as far from them as the best
-    phase.
-    """
-    course = orbit.time_course(_PLACES)
-    away = np.minimum(np.abs(course.y), np.abs(course.y + orbit.problem.backlash))
-    phase = orbit.problem.initial_phase
-    if away[0] < 0.5 * away.max():
-        phase += int(np.argmax(away)) / _PLACES
-    return float(phase % 1.0)

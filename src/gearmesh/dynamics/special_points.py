@@ -13,9 +13,8 @@ import numpy as np
 from scipy.optimize import brentq
 
 from gearmesh.dynamics.continuation import Curve, Point
-from gearmesh.dynamics.orbits import Orbit
-from gearmesh.solvers.reduced.period_map import segments_of
-from gearmesh.solvers.reduced.variational import AFTER, BEFORE, KIND, SEGMENT, SWITCH, VELOCITY
+from gearmesh.dynamics.shots import Shot
+from gearmesh.solvers.reduced.variational import AFTER, BEFORE, VELOCITY
 
 KINDS = ("fold", "flip", "torus", "branch_point", "grazing_front", "grazing_back", "switching")
 """All kinds of special points."""
@@ -48,13 +47,13 @@ class SpecialPoint:
         Mesh frequency nu_s.
     parameters : dict
         The parameter that the branch follows, by name.
-    orbit : Orbit
+    orbit : Shot
     """
 
     kind: str
     nu: float
     parameters: dict[str, float]
-    orbit: Orbit
+    orbit: Shot
 
 
 def search(
@@ -92,7 +91,7 @@ def _once(events: list[tuple[str, Point]]) -> list[tuple[str, Point]]:
     kept: list[tuple[str, Point]] = []
     for kind, point in events:
         again = kind == "switching" and any(
-            kind == other and abs(point.place[4] - known.place[4]) < _SAME_SWITCHING
+            kind == other and abs(point.place[-1] - known.place[-1]) < _SAME_SWITCHING
             for other, known in kept
         )
         kept += [] if again else [(kind, point)]
@@ -169,27 +168,27 @@ def _confirmed(
     if not abs(test(point)) < _LARGEST_VALUE * scale:
         return False
     if kind == "fold":
-        return min(abs(left.tangent[4]), abs(right.tangent[4])) > _LEAST_SLOPE
+        return min(abs(left.slope), abs(right.slope)) > _LEAST_SLOPE
     if kind == "torus":
         return _has_pair_on_the_unit_circle(point.orbit)
     if kind == "switching":
         return _turns_at_a_switch(point.orbit)
     if kind == "branch_point":
-        return left.tangent[4] * right.tangent[4] > 0.0
+        return left.slope * right.slope > 0.0
     return True
 
 
-def _turns_at_a_switch(orbit: Orbit) -> bool:
+def _turns_at_a_switch(orbit: Shot) -> bool:
     """Return whether turning points appear or vanish where the velocity at a switch is 0.
 
     They do if y'' has different signs before and after the switch. Where nothing is damped, y'' may
     be 0 on one side. If the signs are equal, a turning point only passes the switch.
     """
-    still = [s for s in stiffness_jumps(orbit) if abs(s[VELOCITY]) < _LARGEST_VALUE]
+    still = [s for s in orbit.stiffness_jumps if abs(s[VELOCITY]) < _LARGEST_VALUE]
     return any(s[BEFORE] * s[AFTER] < _LARGEST_VALUE for s in still)
 
 
-def _has_pair_on_the_unit_circle(orbit: Orbit) -> bool:
+def _has_pair_on_the_unit_circle(orbit: Shot) -> bool:
     """Return whether the multipliers with the product 1 are a complex pair, not two real ones."""
     products = [(abs(a * b - 1.0), a) for a, b in combinations(orbit.multipliers, 2)]
     return bool(abs(min(products, key=lambda item: item[0])[1].imag) > 1e-6)
@@ -197,16 +196,16 @@ def _has_pair_on_the_unit_circle(orbit: Orbit) -> bool:
 
 def _bifurcation_tests() -> list[Test]:
     return [
-        ("fold", lambda point: float(point.tangent[4])),
+        ("fold", lambda point: point.slope),
         ("branch_point", lambda point: point.determinant),
         ("flip", lambda point: flip_test(point.orbit)),
         ("torus", lambda point: torus_test(point.orbit)),
     ]
 
 
-def flip_test(orbit: Orbit) -> float:
+def flip_test(orbit: Shot) -> float:
     """Return the product of all mu_i + 1."""
-    return float(np.linalg.det(orbit.passage.jacobian + np.eye(4)))
+    return float(np.linalg.det(orbit.monodromy + np.eye(len(orbit.monodromy))))
 
 
 def _event_tests(left: Point, right: Point) -> list[Test]:
@@ -219,20 +218,20 @@ def _event_tests(left: Point, right: Point) -> list[Test]:
     turning = {
         number
         for point in (left, right)
-        for number, switch in enumerate(stiffness_jumps(point.orbit))
+        for number, switch in enumerate(point.orbit.stiffness_jumps)
         if switch[BEFORE] * switch[AFTER] < 0.0
     }
     tests += [("switching", _velocity_at(number)) for number in sorted(turning)]
     return tests
 
 
-def torus_test(orbit: Orbit) -> float:
+def torus_test(orbit: Shot) -> float:
     """Return the product of all mu_i mu_k - 1, which is 0 where a pair is on the unit circle.
 
     Without damping in the mesh a pair may be there all along the branch; the result is then
     not-a-number.
     """
-    if orbit.passage.damping == 0.0:
+    if orbit.undamped:
         return float("nan")
     return float(np.prod([a * b - 1.0 for a, b in combinations(orbit.multipliers, 2)]).real)
 
@@ -259,16 +258,7 @@ def _velocity_at(number: int) -> Callable[[Point], float]:
     """Return the test of a switch of C(t): the velocity there."""
 
     def velocity(point: Point) -> float:
-        switches = stiffness_jumps(point.orbit)
+        switches = point.orbit.stiffness_jumps
         return float(switches[number, VELOCITY]) if number < len(switches) else float("nan")
 
     return velocity
-
-
-def stiffness_jumps(orbit: Orbit) -> np.ndarray:
-    """Return the events at which C(t) jumps."""
-    events = orbit.passage.events
-    events = events[events[:, KIND] == SWITCH]
-    stiffness = segments_of(orbit.problem)[:, 1]
-    number = events[:, SEGMENT].astype(int)
-    return events[stiffness[number] != stiffness[number - 1]]

@@ -23,8 +23,10 @@ from gearmesh.model.problem import Problem
 from gearmesh.solvers.full.roots import MAX_DEGREE
 from gearmesh.solvers.full.tape import (
     ACCELERATE,
+    ENTRY,
     FIRST_FREE,
     MOVES,
+    POWER,
     PRODUCT,
     RATES,
     ROOT,
@@ -52,7 +54,7 @@ _SIGNATURE = ir.FunctionType(ir.VoidType(), _ARGUMENTS)
 _CONVOLVED = (PRODUCT, SIGNED, SINE, ROOT)
 
 
-MOTION, FORCES, PRESSING, SAMPLED = range(4)
+MOTION, FORCES, NORMAL_FORCE, SAMPLED = range(4)
 """Functions of a branch: y, the accelerations, the normal force, what else is sampled."""
 
 N_PARTS = 4
@@ -121,16 +123,23 @@ def _shape(operation: Operation) -> _Shape:
         rows = tuple(row for row, _ in operands[0])
     elif code == WAVE:
         rows = ()
+    elif code in (ENTRY, POWER):
+        rows = operands[:1]
     return code, out, rows, len(_numbers(operation))
 
 
 def _numbers(operation: Operation) -> tuple[float, ...]:
-    """Return the numbers of an operation: a constant, then factors of rows or of time."""
+    """Return the numbers of an operation; those of a sum or an angle begin with its constant."""
     code, _, operands = operation
     if code in SUMS:
         summands, constant = operands
         return constant, *(factor for _, factor in summands)
-    return (operands[1], operands[0]) if code == WAVE else ()
+    if code == WAVE:
+        slope, constant = operands
+        return constant, slope
+    if code == POWER:
+        return operands[1:]
+    return operands[1] if code == ENTRY else ()
 
 
 class _Order:
@@ -208,12 +217,27 @@ class _First(_Order):
             elif code in (ROOT, ROUND):
                 function = "sqrt" if code == ROOT else "rint"
                 self.store(out, self.k, call_llvm(self.builder, function, self.load(rows[0], 0)))
+            elif code == POWER:
+                value = call_llvm(self.builder, "pow", self.load(rows[0], 0), self.number(at))
+                self.store(out, self.k, value)
+            elif code == ENTRY:
+                self.store(out, self.k, self.entry(rows[0], at, many))
             else:
                 value = self.builder.fmul(self.load(rows[0], 0), self.load(rows[1], 0))
                 if code == SIGNED:
                     value = self.builder.fmul(value, self.direction)
                 self.store(out, self.k, value)
             at += many
+
+    def entry(self, row: int, first: int, size: int) -> ir.Value:
+        """Return the number at the whole number in a row, of `size` numbers that repeat."""
+        place = self.builder.fptosi(call_llvm(self.builder, "rint", self.load(row, 0)), INT64)
+        length = ir.Constant(INT64, size)
+        # The remainder has the sign of the place.
+        place = self.builder.srem(place, length)
+        place = self.builder.srem(self.builder.add(place, length), length)
+        place = self.builder.add(place, ir.Constant(INT64, first))
+        return self.builder.load(self.builder.gep(self.numbers, [place]))
 
 
 class _Further(_Order):
@@ -235,10 +259,12 @@ class _Further(_Order):
                 self.turn(out, self.share(speed, 0))
             elif code == SINE:
                 self.sine(out, rows[0])
-            elif code == ROUND:
+            elif code in (ROUND, ENTRY):
                 self.store(out, self.k, _real(0.0))
             elif code == ROOT:
                 self.root(out, rows[0])
+            elif code == POWER:
+                self.power(out, rows[0], self.number(at))
             else:
                 self.product(code, out, *rows)
             at += many
@@ -328,6 +354,15 @@ class _Further(_Order):
         doubled = self.builder.fmul(_real(2.0), self.load(out, 0))
         self.store(out, self.k, self.builder.fdiv(rest, doubled))
 
+    def power(self, out: int, base: int, exponent: ir.Value) -> None:
+        # k b_0 p_k is the sum of (e (k - j) - j) b_(k-j) p_j over j < k, with the exponent e.
+        whole = self.fma(self.load(base, self.k), self.load(out, 0), self.middles[out, base, False])
+        scale = self.builder.fmul(exponent, self.real(self.k))
+        less = self.builder.fadd(exponent, _real(1.0))
+        less = self.builder.fmul(less, self.middles[out, base, True])
+        total = self.builder.fsub(self.builder.fmul(scale, whole), less)
+        self.store(out, self.k, self.builder.fdiv(self.share(total, 0), self.load(base, 0)))
+
 
 def _convolved(operation: _Shape) -> list[tuple[int, int, bool]]:
     """Return the pairs of series that an operation convolves, and if one is differentiated."""
@@ -336,6 +371,8 @@ def _convolved(operation: _Shape) -> list[tuple[int, int, bool]]:
         return [(rows[0], rows[1], False)]
     if code == ROOT:
         return [(out, out, False)]
+    if code == POWER:
+        return [(out, rows[0], False), (out, rows[0], True)]
     if code == SINE:
         return [(rows[0], out + 1, True), (rows[0], out, True)]
     return []

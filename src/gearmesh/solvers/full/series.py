@@ -6,13 +6,13 @@ of order k of the forces gives that of order k + 2 of the coordinates.
 
 import numpy as np
 
-from gearmesh.model.contact import CONTACT_LOSS, INVERSE_MESH
+from gearmesh.model.contact import CONTACT_LOSS, INVERSE_MESH, NORMAL_MESH
 from gearmesh.solvers.compilation import inner
 from gearmesh.solvers.full.recurrences import (
     FORCES,
     MOTION,
     N_PARTS,
-    PRESSING,
+    NORMAL_FORCE,
     SAMPLED,
     carry_out,
 )
@@ -20,8 +20,10 @@ from gearmesh.solvers.full.tape import (
     BRACKET,
     CONSTANT,
     CONTACT,
+    DEPTH,
     GAP,
     N_BRANCHES,
+    PRESSING,
     SIGNS,
     TIME,
     V,
@@ -36,6 +38,7 @@ CASE = np.dtype(
         ("backlash", np.float64),
         ("varying_backlash", np.bool_),
         ("non_adhesive", np.bool_),
+        ("single_pairs", np.bool_),
         ("friction", np.float64),
         ("follows_run_out", np.bool_),
         ("masses", np.float64, 2),
@@ -58,10 +61,11 @@ CASE = np.dtype(
 the mesh line. `segments` is the number of segments in a mesh period.
 """
 
-SEGMENT = np.dtype([("end", np.float64), ("gamma", np.float64)])
+SEGMENT = np.dtype([("end", np.float64), ("gamma", np.float64), ("pairs", np.int64)])
 """A segment of the mesh period (`gearmesh.model.segments`).
 
-`end` is its end in tau_s from the boundary of the period, `gamma` is summed over the pairs.
+`end` is its end in tau_s from the boundary of the period, `gamma` is summed over the pairs, whose
+number is `pairs`.
 """
 
 MODE = np.dtype(
@@ -82,6 +86,9 @@ MODE = np.dtype(
         ("released", np.bool_),
         ("on_gap", np.bool_),
         ("on_force", np.bool_),
+        ("entered", np.bool_),
+        ("pressing", np.float64, 3),
+        ("on_pair", np.float64, 3),
     ]
 )
 """State of a run within its period: `time` since its boundary, and the branch of every law.
@@ -90,7 +97,9 @@ MODE = np.dtype(
 `direction` is the sign of y' (0 before the first motion) and `level` the value of y passed last.
 `turns`, `on_level`, `on_bracket`, `on_gap` and `on_force` state that y', y - `level`, the bracket
 of eq. (6), y + s(t) and the contact force are exactly 0, whatever rounding has left of them in the
-coordinates. `released` states that sticking has just ended.
+coordinates. `released` states that sticking has just ended, and `entered` that a segment has
+just begun. Where pairs of teeth touch singly, `pressing` is 1 for each that presses and `on_pair`
+for each whose depth is exactly 0.
 """
 
 NEW, CONTINUED, UNDER_WAY = range(3)
@@ -101,8 +110,12 @@ NEW, CONTINUED, UNDER_WAY = range(3)
 def level(case, regime, direction):
     """Return the value of y at which motion in `direction` leaves the regime.
 
-    A backlash that varies with time has no such level at the back flanks.
+    A backlash that varies with time has no such level at the back flanks, and pairs of teeth that
+    touch singly have none at the front flanks.
     """
+    meets_front = regime == NORMAL_MESH or (regime == CONTACT_LOSS and direction > 0.0)
+    if case.single_pairs and meets_front:
+        return direction * np.inf
     if direction > 0.0:
         if regime == INVERSE_MESH:
             return np.inf if case.varying_backlash else -case.backlash
@@ -154,12 +167,17 @@ def begin(case, mode, state, tape, variant, series):
         series[BRACKET, 0] = 0.0
     if mode.on_gap:
         series[GAP, 0] = 0.0
+    for j in range(3):
+        if mode.on_pair[j] != 0.0 and not mode.entered:
+            series[DEPTH + j, 0] = 0.0
 
 
 @inner
 def expand(case, mode, tape, variant, series, order):
     """Fill the series up to `order`, from what `begin` wrote."""
     series[SIGNS, 0] = mode.run_out_sign * mode.slip_sign
+    for j in range(3):
+        series[PRESSING + j, 0] = mode.pressing[j]
     _carry_out(mode, tape, branch_of(case, mode, variant), FORCES, 0, order - 1, series)
     if mode.on_force:
         series[CONTACT, 0] = 0.0
@@ -169,6 +187,6 @@ def expand(case, mode, tape, variant, series, order):
 def expand_outputs(case, mode, tape, variant, sampled, series):
     """Fill the series of the normal force and, if wanted, of all that is sampled."""
     branch = branch_of(case, mode, variant)
-    _carry_out(mode, tape, branch, PRESSING, 0, case.order - 1, series)
+    _carry_out(mode, tape, branch, NORMAL_FORCE, 0, case.order - 1, series)
     if sampled:
         _carry_out(mode, tape, branch, SAMPLED, 0, case.order - 1, series)

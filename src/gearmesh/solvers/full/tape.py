@@ -15,7 +15,7 @@ import numpy as np
 
 from gearmesh.model import motion
 from gearmesh.model.contact import CONTACT_LOSS, INVERSE_MESH, NORMAL_MESH
-from gearmesh.model.mesh import backlash
+from gearmesh.model.flanks import distances
 from gearmesh.model.problem import Problem
 from gearmesh.model.stiffness import TURN
 from gearmesh.solvers.full.coordinates import embedding, signs_act
@@ -24,28 +24,31 @@ COORDINATES, RATES = 0, 6
 TIME, CONSTANT, SIGNS = range(12, 15)
 Y, V, SWING, BRACKET, GAP, CONTACT, ELASTIC, FRICTION, STIFFNESS, NORMAL = range(15, 25)
 TRANSMISSION, BEARING_3, BEARING_2 = range(25, 28)
-FIRST_FREE = 28
+PRESSING, DEPTH = 28, 31
+FIRST_FREE = 34
 """Rows of the table of series.
 
 The first six are the coordinates, the next six their rates. TIME counts mesh periods. CONSTANT
 is 1, SIGNS the product of both signs of eq. (6). V and BRACKET are the rates of Y and
 SWING. GAP is y + s(t). CONTACT and NORMAL are the force of flanks that touch, and what of it acts
 (`gearmesh.model.motion.Forces`). TRANSMISSION is the transmission error, BEARING_3 and BEARING_2
-are what the bodies exert on their bearings along the mesh line.
+are what the bodies exert on their bearings along the mesh line. PRESSING and DEPTH have a row for
+each pair of teeth that may touch singly: 1 where it presses, else 0, and how deep it is in contact.
 """
 
-SUM, MOVES, ACCELERATE, PRODUCT, SIGNED, WAVE, SINE, ROOT, ROUND = range(9)
+SUM, MOVES, ACCELERATE, PRODUCT, SIGNED, WAVE, SINE, ROOT, ROUND, ENTRY, POWER = range(11)
 """Operations.
 
 MOVES is a sum whose rate is wanted too, in the next row. SIGNED is a product with the sign of y'.
-WAVE is the sine and cosine of an angle that is linear in time.
+WAVE is the sine and cosine of an angle that is linear in time. ENTRY is the entry of a table, which
+repeats, at a whole number. POWER has a constant exponent.
 """
 
 Operation = tuple[int, int, tuple[Any, ...]]
 """What is done, the row that is written, and the operands.
 
 The operands of a product are two rows. A sum has its summands, rows and factors, and a constant.
-WAVE has the slope and the constant of its angle.
+WAVE has the slope and the constant of its angle, ENTRY a table after its row, POWER an exponent.
 """
 
 SUMS = (SUM, MOVES, ACCELERATE)
@@ -111,6 +114,12 @@ class _Traced:
 
     def __round__(self) -> "_Traced":
         return self.trace.single(ROUND, self)
+
+    def entry(self, table: tuple[float, ...]) -> "_Traced":
+        return self.trace.entry(table, self)
+
+    def power(self, exponent: float) -> "_Traced":
+        return self.trace.power(self, exponent)
 
     def sqrt(self) -> "_Traced":
         return self.trace.single(ROOT, self)
@@ -178,6 +187,14 @@ class _Trace:
     def single(self, code: int, value: _Traced) -> _Traced:
         """Return what an operation makes of one number."""
         return self.row(self._result(code, (self._row_exactly(value),)))
+
+    def entry(self, table: tuple[float, ...], place: _Traced) -> _Traced:
+        """Return the entry of a table at a whole number."""
+        return self.row(self._result(ENTRY, (self._row_exactly(place), table)))
+
+    def power(self, base: _Traced, exponent: float) -> _Traced:
+        """Return a positive number to a constant power."""
+        return self.row(self._result(POWER, (self._row_exactly(base), exponent)))
 
     def wave(self, angle: _Traced) -> tuple[_Traced, _Traced]:
         """Return sine and cosine of an angle."""
@@ -266,13 +283,18 @@ def _record(
     y = trace.name(Y, motion.displacement(problem, time, q), MOVES)
     if signed:
         trace.name(SWING, motion.run_out_integral(problem, time, q), MOVES)
-    if problem.terms.backlash_harmonics:
-        trace.name(GAP, y + backlash(problem, time))
+    if problem.terms.backlash_varies:
+        trace.name(GAP, y + motion.gap(problem, time, q))
+    if problem.terms.pairs_touch_singly:
+        starts = distances(problem, motion.mesh_phase(problem, time), mode.segment)
+        for j, start in enumerate(starts):
+            trace.name(DEPTH + j, y - start)
+        mode = replace(mode, pressing=tuple(trace.row(PRESSING + j) for j in range(len(starts))))
     moved = len(trace.operations)
     if signed and mode.slip_sign:
         mode = replace(mode, slip_sign=trace.row(SIGNS))
     mesh = motion.forces(problem, time, q, v, y, trace.row(V), mode)
-    wanted = [Y, V, SWING, BRACKET, GAP]
+    wanted = [Y, V, SWING, BRACKET, GAP, *range(DEPTH, DEPTH + 3)]
     if problem.terms.non_adhesive:
         trace.name(CONTACT, mesh.contact)
         wanted.append(CONTACT)
@@ -300,7 +322,8 @@ def _record(
     everything = trace.operations
     needed = _needed(everything[:forced], wanted)
     pressing = _needed(everything, [NORMAL]) - needed
-    outputs = _needed(everything, [*range(STIFFNESS, FIRST_FREE), FRICTION]) - needed - pressing
+    sampled = [*range(STIFFNESS, BEARING_2 + 1), FRICTION]
+    outputs = _needed(everything, sampled) - needed - pressing
     return [
         [everything[i] for i in sorted(needed) if i < moved],
         [everything[i] for i in sorted(needed) if i >= moved],
@@ -319,6 +342,8 @@ def _needed(operations: list[Operation], rows: Iterable[int]) -> set[int]:
             found.add(i)
             if code in SUMS:
                 wanted.update(row for row, _ in operands[0])
+            elif code in (ENTRY, POWER):
+                wanted.add(operands[0])
             elif code != WAVE:
                 wanted.update(operands[:2])
     return found
