@@ -323,7 +323,8 @@ def run(
     variants : ndarray of int, shape (periods + 1,)
         Which kind of period each is: where single teeth have factors, periods differ.
     tape : tuple of ndarray
-        The fields of `gearmesh.solvers.full.tape.Tape` for the segments of every kind of period.
+        Numbers and branches of `gearmesh.solvers.full.recurrences.Recurrences` for the segments of
+        every kind of period.
     state : ndarray, shape (12,)
         Coordinates and, from the seventh place, rates at the start; at the end afterwards.
     modes : ndarray of `MODE`, shape (1,)

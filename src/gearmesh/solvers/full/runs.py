@@ -21,9 +21,9 @@ from gearmesh.solvers.compilation import persistent
 from gearmesh.solvers.full import kernel
 from gearmesh.solvers.full.coordinates import embedding, kinds_of_period, projected, signs_act
 from gearmesh.solvers.full.measures import SAMPLE, SUMMARY
+from gearmesh.solvers.full.recurrences import recurrences
 from gearmesh.solvers.full.roots import MAX_DEGREE
 from gearmesh.solvers.full.series import CASE, CONTINUED, MODE, SEGMENT
-from gearmesh.solvers.full.tape import tape
 from gearmesh.solvers.response import EXTREMUM, LOOSENING, Companion, Response, Samples, assemble
 
 _EXTREMA_PER_PERIOD = 64
@@ -108,14 +108,14 @@ class _Run:
         self.problem = problem
         self.embedding = embedding(problem)
         kinds, variants = kinds_of_period(problem)
-        recorded = tape(problem, kinds)
+        found = recurrences(problem, kinds, samples_per_period > 0)
         self._arguments = (
             _case(problem, tolerance, order, self.embedding.shape[1]),
             _segments(problem),
             variants,
-            tuple(recorded),
+            (found.numbers, found.branches),
         )
-        self._series = np.zeros((recorded.height, MAX_DEGREE + 1))
+        self._series = np.zeros((found.height, MAX_DEGREE + 1))
         self.extrema = np.zeros(0, EXTREMUM)
         self.start = np.concatenate(start(problem))
         self.start[ROTATION_3] += displacement
