@@ -85,7 +85,7 @@ def integrate(
         run.final_state(),
         companion,
         tolerance,
-        _samples(run.samples) if samples_per_period else None,
+        _samples(run.samples, run.summary["extremes"]) if samples_per_period else None,
         run.rotation_drift,
         float(run.summary["least_contact_force"]),
     )
@@ -129,6 +129,7 @@ class _Run:
         summaries = np.zeros(1, SUMMARY)
         summaries["y_max"], summaries["y_min"] = -np.inf, np.inf
         summaries["least_contact_force"] = np.inf
+        summaries["extremes"] = np.inf, -np.inf
         self.summary = summaries[0]
         self.state = projected(self.start, self.embedding)
         self.mode = _mode(self.problem)
@@ -243,7 +244,7 @@ def _segments(problem: Problem) -> np.ndarray:
     return np.array(parts, SEGMENT)
 
 
-def _samples(rows: np.ndarray) -> Samples:
+def _samples(rows: np.ndarray, extremes: np.ndarray) -> Samples:
     columns = {name: rows[name].copy() for name in SAMPLE.fields or ()}
     regime = columns["regime"].astype(np.int8)
     return Samples(
@@ -260,4 +261,5 @@ def _samples(rows: np.ndarray) -> Samples:
         force_bearing_2=columns["bearing_2"],
         transmission_error=columns["transmission_error"],
         regime=regime,
+        extremes=extremes,
     )
