@@ -164,7 +164,8 @@ def double_period(point: SpecialPoint, family: Family | None = None) -> Shot:
     ((parameter, value),) = point.parameters.items()
     family = family or field_family(point.orbit.problem, parameter)
     single = point.orbit.at_phase(clear_phase(point.orbit))
-    curve = Curve(family, 2 * single.periods, (1.0,), single.problem.initial_phase, single)
+    phase, stretched = single.problem.initial_phase, stretches(family, value)
+    curve = Curve(family, 2 * single.periods, (1.0,), phase, single, stretches=stretched)
     across = np.linalg.svd(single.monodromy + np.eye(len(single.monodromy)))[2][-1]
     normal = np.append(across, 0.0)
     place = np.append(single.state, value) + _AMPLITUDE * normal

@@ -281,7 +281,8 @@ def common_period(problem: Problem) -> int:
     harmonics = (*terms.torque_harmonics_3, *terms.torque_harmonics_2, *terms.backlash_harmonics)
     if any(abs(one.order * both - round(one.order * both)) > _SAME for one in harmonics):
         raise NoOrbit("the excitation has frequencies of no common period with mesh and shafts")
-    if terms.tooth_factors or not all(float(one.order).is_integer() for one in harmonics):
+    of_teeth = terms.tooth_factors or terms.pitch_errors_3 or terms.pitch_errors_2
+    if of_teeth or not all(float(one.order).is_integer() for one in harmonics):
         return both
     return math.lcm(
         wheel_3.teeth if problem.eccentricity_3 else 1,

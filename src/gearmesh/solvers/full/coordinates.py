@@ -1,8 +1,9 @@
 """Which coordinates a run needs, and in which mesh periods it differs.
 
 Without run-out the rotations act through their sum alone, and nothing that moves across the mesh
-line acts back. Two or three coordinates then determine y: R_b3 phi_3 + R_b2 phi_2, and y_3 - y_2
-for equal bodies on equal bearings, or y_3 and y_2.
+line acts back, unless the backlash follows the wheels' centres. Two or three coordinates then
+determine y: R_b3 phi_3 + R_b2 phi_2, and y_3 - y_2 for equal bodies on equal bearings, or y_3 and
+y_2.
 """
 
 import numpy as np
@@ -26,7 +27,7 @@ def embedding(problem: Problem) -> np.ndarray:
 
     The columns are orthogonal.
     """
-    if problem.has_run_out:
+    if problem.has_run_out or problem.terms.backlash_follows_centres:
         return np.eye(6)
     columns = []
     if any(problem.terms.torsional_damping):

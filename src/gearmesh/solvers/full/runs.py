@@ -238,8 +238,9 @@ def _case(problem: Problem, tolerance: float, order: int, coordinates: int) -> n
     # Numbers that have the same name and meaning in both.
     for name in ("period", "initial_phase", "backlash", "start_period", "periods"):
         case[name] = getattr(problem, name)
-    case["varying_backlash"] = bool(problem.terms.backlash_harmonics)
+    case["varying_backlash"] = problem.terms.backlash_varies
     case["non_adhesive"] = problem.terms.non_adhesive
+    case["single_pairs"] = problem.terms.pairs_touch_singly
     case["friction"] = problem.friction_coefficient
     case["follows_run_out"] = signs_act(problem)
     case["masses"] = [wheel.body_mass for wheel in problem.both_wheels]
@@ -260,7 +261,7 @@ def _case(problem: Problem, tolerance: float, order: int, coordinates: int) -> n
 def _segments(problem: Problem, share: float) -> np.ndarray:
     """Return the segments of a share of a mesh period as the kernel takes them."""
     parts = [
-        (min(part.end, share) * problem.period, part.gamma)
+        (min(part.end, share) * problem.period, part.gamma, len(part.pairs))
         for part in segments(problem)
         if part.start < share
     ]

@@ -6,7 +6,7 @@ of order k of the forces gives that of order k + 2 of the coordinates.
 
 import numpy as np
 
-from gearmesh.model.contact import CONTACT_LOSS, INVERSE_MESH
+from gearmesh.model.contact import CONTACT_LOSS, INVERSE_MESH, NORMAL_MESH
 from gearmesh.solvers.compilation import inner
 from gearmesh.solvers.full.roots import MAX_DEGREE
 from gearmesh.solvers.full.tape import (
@@ -14,10 +14,14 @@ from gearmesh.solvers.full.tape import (
     BRACKET,
     CONSTANT,
     CONTACT,
+    DEPTH,
+    ENTRY,
     FACTORS,
     GAP,
     MOVES,
     N_BRANCHES,
+    POWER,
+    PRESSING,
     PRODUCT,
     ROOT,
     ROUND,
@@ -37,6 +41,7 @@ CASE = np.dtype(
         ("backlash", np.float64),
         ("varying_backlash", np.bool_),
         ("non_adhesive", np.bool_),
+        ("single_pairs", np.bool_),
         ("friction", np.float64),
         ("follows_run_out", np.bool_),
         ("masses", np.float64, 2),
@@ -59,10 +64,11 @@ CASE = np.dtype(
 the mesh line. `segments` is the number of segments in a mesh period.
 """
 
-SEGMENT = np.dtype([("end", np.float64), ("gamma", np.float64)])
+SEGMENT = np.dtype([("end", np.float64), ("gamma", np.float64), ("pairs", np.int64)])
 """A segment of the mesh period (`gearmesh.model.segments`).
 
-`end` is its end in tau_s from the boundary of the period, `gamma` is summed over the pairs.
+`end` is its end in tau_s from the boundary of the period, `gamma` is summed over the pairs, whose
+number is `pairs`.
 """
 
 MODE = np.dtype(
@@ -83,6 +89,9 @@ MODE = np.dtype(
         ("released", np.bool_),
         ("on_gap", np.bool_),
         ("on_force", np.bool_),
+        ("entered", np.bool_),
+        ("pressing", np.float64, 3),
+        ("on_pair", np.float64, 3),
     ]
 )
 """State of a run within its period: `time` since its boundary, and the branch of every law.
@@ -91,7 +100,9 @@ MODE = np.dtype(
 `direction` is the sign of y' (0 before the first motion) and `level` the value of y passed last.
 `turns`, `on_level`, `on_bracket`, `on_gap` and `on_force` state that y', y - `level`, the bracket
 of eq. (6), y + s(t) and the contact force are exactly 0, whatever rounding has left of them in the
-coordinates. `released` states that sticking has just ended.
+coordinates. `released` states that sticking has just ended, and `entered` that a segment has
+just begun. Where pairs of teeth touch singly, `pressing` is 1 for each that presses and `on_pair`
+for each whose depth is exactly 0.
 """
 
 INVERSE = np.array([0.0] + [1.0 / k for k in range(1, MAX_DEGREE + 3)])
@@ -108,8 +119,12 @@ NEW, CONTINUED, UNDER_WAY = range(3)
 def level(case, regime, direction):
     """Return the value of y at which motion in `direction` leaves the regime.
 
-    A backlash that varies with time has no such level at the back flanks.
+    A backlash that varies with time has no such level at the back flanks, and pairs of teeth that
+    touch singly have none at the front flanks.
     """
+    meets_front = regime == NORMAL_MESH or (regime == CONTACT_LOSS and direction > 0.0)
+    if case.single_pairs and meets_front:
+        return direction * np.inf
     if direction > 0.0:
         if regime == INVERSE_MESH:
             return np.inf if case.varying_backlash else -case.backlash
@@ -166,8 +181,15 @@ def _carry_out(mode, tape, forces, end, motion, motion_end, ahead, start, stop, 
                         series[out + ONE, k] = -scale * series[out, k - 1]
                 elif code == ROUND:
                     series[out, k] = np.round(series[one, 0]) if k == 0 else 0.0
+                elif code == ENTRY:
+                    if k == 0:
+                        place = np.int64(np.round(series[one, 0])) % np.int64(two)
+                        total = numbers[i, FACTORS + place]
+                    series[out, k] = total
                 elif code == ROOT:
                     _root(series, out, one, k)
+                elif code == POWER:
+                    _power(series, out, one, numbers[i, 0], k)
                 else:
                     _sine(series, out, one, k)
 
@@ -195,6 +217,18 @@ def _root(series, out, square, k):
     for j in range(1, k):
         rest -= series[out, j] * series[out, k - j]
     series[out, k] = rest / (2.0 * series[out, 0])
+
+
+@inner
+def _power(series, out, base, exponent, k):
+    """Add the k-th coefficient of a power of a series that begins with a positive number."""
+    if k == 0:
+        series[out, 0] = series[base, 0] ** exponent
+        return
+    total = 0.0
+    for j in range(k):
+        total += (exponent * (k - j) - j) * series[base, k - j] * series[out, j]
+    series[out, k] = total * INVERSE[k] / series[base, 0]
 
 
 @inner
@@ -236,6 +270,9 @@ def begin(case, mode, state, tape, variant, series):
         series[BRACKET, 0] = 0.0
     if mode.on_gap:
         series[GAP, 0] = 0.0
+    for j in range(3):
+        if mode.on_pair[j] != 0.0 and not mode.entered:
+            series[DEPTH + j, 0] = 0.0
 
 
 @inner
@@ -243,6 +280,8 @@ def expand(case, mode, tape, variant, series, order):
     """Fill the series up to `order`, from what `begin` wrote."""
     motion, forces, outputs = _places(case, mode, tape, variant)
     series[SIGNS, 0] = mode.run_out_sign * mode.slip_sign
+    for j in range(3):
+        series[PRESSING + j, 0] = mode.pressing[j]
     _carry_out(mode, tape, forces, outputs, motion, forces, 2, 0, order - 1, series)
     if mode.on_force:
         series[CONTACT, 0] = 0.0

@@ -16,7 +16,7 @@ import numpy as np
 
 from gearmesh.model import motion
 from gearmesh.model.contact import CONTACT_LOSS, INVERSE_MESH, NORMAL_MESH
-from gearmesh.model.mesh import backlash
+from gearmesh.model.flanks import distances
 from gearmesh.model.problem import Problem
 from gearmesh.model.stiffness import TURN
 from gearmesh.solvers.full.coordinates import embedding, signs_act
@@ -26,33 +26,37 @@ COORDINATES, RATES = 0, 6
 TIME, CONSTANT, SIGNS = range(12, 15)
 Y, V, SWING, BRACKET, GAP, CONTACT, ELASTIC, FRICTION, STIFFNESS, NORMAL = range(15, 25)
 TRANSMISSION, BEARING_3, BEARING_2 = range(25, 28)
-FIRST_FREE = 28
+PRESSING, DEPTH = 28, 31
+FIRST_FREE = 34
 """Rows of the table of series.
 
 The first six are the coordinates, the next six their rates. TIME counts mesh periods. CONSTANT
 is 1, SIGNS the product of both signs of eq. (6). V and BRACKET are the rates of Y and
 SWING. GAP is y + s(t). CONTACT and NORMAL are the force of flanks that touch, and what of it acts
 (`gearmesh.model.motion.Forces`). TRANSMISSION is the transmission error, BEARING_3 and BEARING_2
-are what the bodies exert on their bearings along the mesh line.
+are what the bodies exert on their bearings along the mesh line. PRESSING and DEPTH have a row for
+each pair of teeth that may touch singly: 1 where it presses, else 0, and how deep it is in contact.
 """
 
-SUM, MOVES, ACCELERATE, PRODUCT, SIGNED, WAVE, SINE, ROOT, ROUND = range(9)
+SUM, MOVES, ACCELERATE, PRODUCT, SIGNED, WAVE, SINE, ROOT, ROUND, ENTRY, POWER = range(11)
 """Operations.
 
 MOVES is a sum whose rate is wanted too, in the next row. SIGNED is a product with the sign of y'.
-WAVE is the sine and cosine of an angle that is linear in time.
+WAVE is the sine and cosine of an angle that is linear in time. ENTRY is the entry of a table, which
+repeats, at a whole number. POWER has a constant exponent.
 """
 
 CODE, OUT, FIRST, SECOND, DEGREE, SUMMANDS = range(6)
 """Columns of an operation: what it does, the row that it writes, and its operands.
 
 The operands of a product are two rows, and the degree in time of the first. A sum has the number of
-its summands in place of the second operand; their rows stand from SUMMANDS on.
+its summands in place of the second operand; their rows stand from SUMMANDS on. ENTRY has the length
+of its table there.
 """
 
 ADDED, SLOPE, FACTORS = range(3)
-"""Columns of the numbers of an operation: a constant summand, the rate of the angle of WAVE, and
-from FACTORS on the factors of the summands."""
+"""Columns of the numbers of an operation: a constant summand or exponent, the rate of the angle of
+WAVE, and from FACTORS on the factors of the summands, or a table."""
 
 _Operation = tuple[int, int, tuple[Any, ...]]
 """What is done, the row that is written, and the operands."""
@@ -145,6 +149,12 @@ class _Traced:
     def __round__(self) -> "_Traced":
         return self.trace.single(ROUND, self)
 
+    def entry(self, table: tuple[float, ...]) -> "_Traced":
+        return self.trace.entry(table, self)
+
+    def power(self, exponent: float) -> "_Traced":
+        return self.trace.power(self, exponent)
+
     def sqrt(self) -> "_Traced":
         return self.trace.single(ROOT, self)
 
@@ -160,7 +170,7 @@ class _Trace:
 
     def __init__(self) -> None:
         self.operations: list[_Operation] = []
-        self.degrees = {TIME: 1, CONSTANT: 0, SIGNS: 0}
+        self.degrees = {TIME: 1, CONSTANT: 0, SIGNS: 0, **dict.fromkeys(range(PRESSING, DEPTH), 0)}
         self._known: dict[tuple[Any, ...], int] = {}
         self._moduli: dict[int, int] = {}
         self._free = FIRST_FREE
@@ -220,6 +230,14 @@ class _Trace:
         """Return what an operation makes of one number."""
         degree = 0 if code == ROUND else MAX_DEGREE
         return self.row(self._result(code, (self._row_exactly(value),), degree))
+
+    def entry(self, table: tuple[float, ...], place: _Traced) -> _Traced:
+        """Return the entry of a table at a whole number."""
+        return self.row(self._result(ENTRY, (self._row_exactly(place), table), 0))
+
+    def power(self, base: _Traced, exponent: float) -> _Traced:
+        """Return a positive number to a constant power."""
+        return self.row(self._result(POWER, (self._row_exactly(base), exponent), MAX_DEGREE))
 
     def wave(self, angle: _Traced) -> tuple[_Traced, _Traced]:
         """Return sine and cosine of an angle."""
@@ -305,13 +323,18 @@ def _record(
     y = trace.name(Y, motion.displacement(problem, time, q), MOVES)
     if signed:
         trace.name(SWING, motion.run_out_integral(problem, time, q), MOVES)
-    if problem.terms.backlash_harmonics:
-        trace.name(GAP, y + backlash(problem, time))
+    if problem.terms.backlash_varies:
+        trace.name(GAP, y + motion.gap(problem, time, q))
+    if problem.terms.pairs_touch_singly:
+        starts = distances(problem, motion.mesh_phase(problem, time), mode.segment)
+        for j, start in enumerate(starts):
+            trace.name(DEPTH + j, y - start)
+        mode = replace(mode, pressing=tuple(trace.row(PRESSING + j) for j in range(len(starts))))
     moved = len(trace.operations)
     if signed and mode.slip_sign:
         mode = replace(mode, slip_sign=trace.row(SIGNS))
     mesh = motion.forces(problem, time, q, v, y, trace.row(V), mode)
-    wanted = [Y, V, SWING, BRACKET, GAP]
+    wanted = [Y, V, SWING, BRACKET, GAP, *range(DEPTH, DEPTH + 3)]
     if problem.terms.non_adhesive:
         trace.name(CONTACT, mesh.contact)
         wanted.append(CONTACT)
@@ -339,7 +362,8 @@ def _record(
     everything = trace.operations
     needed = _needed(everything[:forced], wanted)
     pressing = _needed(everything, [NORMAL]) - needed
-    outputs = _needed(everything, [*range(STIFFNESS, FIRST_FREE), FRICTION]) - needed - pressing
+    sampled = [*range(STIFFNESS, BEARING_2 + 1), FRICTION]
+    outputs = _needed(everything, sampled) - needed - pressing
     return [
         [everything[i] for i in sorted(needed) if i < moved],
         [everything[i] for i in sorted(needed) if i >= moved],
@@ -358,6 +382,8 @@ def _needed(operations: list[_Operation], rows: Iterable[int]) -> set[int]:
             found.add(i)
             if code in _SUMS:
                 wanted.update(row for row, _ in operands[0])
+            elif code in (ENTRY, POWER):
+                wanted.add(operands[0])
             elif code != WAVE:
                 wanted.update(operands[:2])
     return found
@@ -367,7 +393,10 @@ def _arrays(operations: list[_Operation]) -> tuple[np.ndarray, np.ndarray]:
     """Return operations and their numbers, as `Tape` holds them."""
     most = max((len(operands[0]) for code, _, operands in operations if code in _SUMS), default=0)
     table = np.zeros((len(operations), SUMMANDS + most), np.uint64)
-    numbers = np.zeros((len(operations), FACTORS + most))
+    longest = max(
+        (len(operands[1]) for code, _, operands in operations if code == ENTRY), default=0
+    )
+    numbers = np.zeros((len(operations), FACTORS + max(most, longest)))
     for i, (code, out, operands) in enumerate(operations):
         table[i, CODE], table[i, OUT] = code, out
         if code in _SUMS:
@@ -377,6 +406,12 @@ def _arrays(operations: list[_Operation]) -> tuple[np.ndarray, np.ndarray]:
                 table[i, SUMMANDS + j], numbers[i, FACTORS + j] = row, factor
         elif code == WAVE:
             numbers[i, SLOPE], numbers[i, ADDED] = operands
+        elif code == POWER:
+            table[i, FIRST], numbers[i, ADDED] = operands
+        elif code == ENTRY:
+            row, entries = operands
+            table[i, FIRST], table[i, SECOND] = row, len(entries)
+            numbers[i, FACTORS : FACTORS + len(entries)] = entries
         else:
             table[i, FIRST : FIRST + len(operands)] = operands
     return table, numbers
