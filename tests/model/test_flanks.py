@@ -87,7 +87,7 @@ def test_normal_mesh_is_where_any_pair_presses():
         assert 2.0 * motion.accelerations(one, time, q, v)[0] == pytest.approx(1.0 - force)
 
 
-@pytest.mark.parametrize("exponent", [1.5, 1.0, 2.5])
+@pytest.mark.parametrize("exponent", [1.5, 1.0, 2.0, 2.5])
 def test_the_force_of_hertz_is_a_power_of_the_depth(exponent):
     for y, regime, depth in ((0.7, NORMAL_MESH, 0.7), (-5.3, INVERSE_MESH, 1.3)):
         force = elastic_force(y, 1.2, regime, 4.0, exponent=exponent)

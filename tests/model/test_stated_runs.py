@@ -138,6 +138,15 @@ def test_a_state_is_given_by_the_motion_of_the_mesh():
     assert (begun[0].tolist(), begun[1].tolist()) == (q.tolist(), v.tolist())
 
 
+def test_a_state_is_given_by_all_coordinates():
+    q, v = np.random.default_rng(6).normal(size=(2, 6))
+    state = motion.state_of(ECCENTRIC, q, v)
+    assert (state.y, state.v) == relative_motion(ECCENTRIC, ECCENTRIC.start_time, q, v)
+    assert (state.b, state.b_rate) == (q[Y_3] - q[Y_2], v[Y_3] - v[Y_2])
+    begun = motion.start(replace(ECCENTRIC, initial_state=state))
+    assert (begun[0].tolist(), begun[1].tolist()) == (q.tolist(), v.tolist())
+
+
 def test_y_of_a_state_is_the_sum_of_both_motions_of_the_reduced_system():
     """Rounded as (y - b) + b, so that a run that starts there has the same y bit for bit."""
     one = problem(bearing_stiffness=0.7)

@@ -196,9 +196,10 @@ def test_flanks_that_do_not_adhere_part_where_the_contact_force_would_pull(y, si
     assert not motion.mode_of(sticky, 0.0, q, v).parted
     acting = 0.0 if pulls else force
     assert 2.0 * motion.accelerations(free, 0.0, q, v)[0] == pytest.approx(1.0 - acting)
-    # In contact loss the lubricant may pull.
+    # In contact loss the lubricant may pull, and where flanks just touch nothing does.
     q[0] = -1.0
     assert not motion.mode_of(free, 0.0, q, v).parted
+    assert not motion.mode_of(free, 0.0, np.zeros(6), np.zeros(6)).parted
 
 
 def test_the_forces_of_parted_flanks_are_none_but_the_contact_force_is_known():
