@@ -41,7 +41,7 @@ TABLE = ((0.0, 1.1), (0.3, 1.3), (0.3, 0.9), (0.6, 0.7), (1.0, 1.1))
 PROBLEMS = {
     "equal wheels": ROUGH,
     "equal wheels, no run-out": replace(ROUGH, eccentricity_3=0.0, eccentricity_2=0.0),
-    "cut series": replace(ROUGH, stiffness_harmonics=4),
+    "cut series": replace(ROUGH, stiffness_harmonics=4, friction_coefficient=1.0),
     "series": replace(
         ROUGH,
         terms=replace(TERMS, stiffness_fourier=((0.2, 0.1), (0.03, -0.05)), damping_power=1.0),
