@@ -62,6 +62,7 @@ class Mutant:
     """A change of a file."""
 
     file: Path
+    source: str
     number: int
     change: Change
 
@@ -72,7 +73,7 @@ class Mutant:
 
     def code(self) -> Any:
         """Return the changed module."""
-        return compile(changed(self.file.read_text("utf-8"), self.number), str(self.file), "exec")
+        return compile(changed(self.source, self.number), str(self.file), "exec")
 
 
 @dataclass(frozen=True)
@@ -106,12 +107,13 @@ class Target:
     def __init__(self, name: str, state: str, options: argparse.Namespace) -> None:
         patterns, self._tests = TARGETS[name]
         self._state, self._jobs = state, options.jobs
-        self._files = sorted(f for p in patterns for f in (SOURCE / "gearmesh").glob(p))
+        files = sorted(f for p in patterns for f in (SOURCE / "gearmesh").glob(p))
+        self._sources = {file: file.read_text("utf-8") for file in files}
         self._outcomes = OUTCOMES / f"{name}.jsonl"
         found = [
-            Mutant(file, number, change)
-            for file in self._files
-            for number, change in enumerate(changes(file.read_text("utf-8")))
+            Mutant(file, source, number, change)
+            for file, source in self._sources.items()
+            for number, change in enumerate(changes(source))
         ]
         self.mutants = found[:: options.every]
         if options.survivors:
@@ -140,7 +142,7 @@ class Target:
             child = os.fork()
             if not child:
                 # The tests import the package here, so that the parent stays without it.
-                trace = tests.Trace(self._files)
+                trace = tests.Trace(self._sources)
                 sys.settrace(trace)
                 use = functools.partial(self._in_place, trace, waiting, handed)
                 os._exit(tests.collect(self._tests, use))
@@ -156,8 +158,8 @@ class Target:
         """Run the mutants of functions; hand over the numbers of the others."""
         observed = tests.observe(session, trace)
         baseline = tests.Baseline.read(observed)
-        functions = live.functions(self._files)
-        before = {f: compile(f.read_text("utf-8"), str(f), "exec") for f in self._files}
+        functions = live.functions(self._sources)
+        before = {file: compile(text, str(file), "exec") for file, text in self._sources.items()}
         left = []
 
         def tasks() -> Iterable[Task]:
@@ -215,7 +217,6 @@ def main() -> int:
     os.chdir(ROOT)
     sys.path.insert(0, str(SOURCE))
     os.environ["PYTHONPATH"] = str(SOURCE)
-    sys.dont_write_bytecode = True
     _load_libraries()
     state = _digest()
     count = dead = 0

@@ -13,6 +13,7 @@ from gearmesh.dynamics.starts import coordinates
 from gearmesh.model.contact import CONTACT_LOSS
 from gearmesh.solvers.reduced import variational
 from gearmesh.solvers.reduced.period_map import passage
+from gearmesh.solvers.reduced.polynomials import first_root
 from gearmesh.solvers.simulation import simulate
 
 REST = (1.0, 0.0, -2.0, 0.0)
@@ -88,7 +89,7 @@ def test_samples_are_those_of_the_sweep():
 
 @njit
 def _first_root(polynomial, end):
-    return variational.first_root(polynomial, end)
+    return first_root(polynomial, end)
 
 
 def test_first_root_misses_no_close_pair():

@@ -46,6 +46,12 @@ class _Traced:
         operands = (self.value, self._operand(factor), self._operand(summand))
         return _Traced(self.builder, call_llvm(self.builder, "fma", *operands))
 
+    def first(self):
+        """Return the first lane in every lane."""
+        width = width_of_value(self.value)
+        mask = ir.Constant(ir.VectorType(ir.IntType(32), width), [0] * width)
+        return _Traced(self.builder, self.builder.shuffle_vector(self.value, self.value, mask))
+
     def times_each(self, factors):
         """Return self times each of the factors, side by side in one longer vector."""
         width = width_of_value(self.value)

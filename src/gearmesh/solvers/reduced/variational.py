@@ -14,16 +14,33 @@ import numpy as np
 
 from gearmesh.model.contact import CONTACT_LOSS, INVERSE_MESH, NORMAL_MESH
 from gearmesh.solvers.compilation import inner
+from gearmesh.solvers.lanes.operations import (
+    WIDEST,
+    any_lane,
+    fma,
+    lane_numbers,
+    magnitude,
+    select,
+    spread,
+    zeros8,
+)
+from gearmesh.solvers.lanes.rows import load, pointer_to, store, store_at
 from gearmesh.solvers.reduced.deviations import (
     DEVIATIONS,
-    FORCE_PLACES,
+    N_ROWS,
     ORDER,
+    RATE,
     SIZE,
+    SQUARE,
+    B,
+    V,
+    Y,
+    advance,
     expand,
-    least_force_in,
     longest_step,
-    write_deviations,
+    motion_at,
 )
+from gearmesh.solvers.reduced.polynomials import first_root, root_between, value_and_slope
 
 TURN, CROSSING, SWITCH = range(3)
 """Kinds of events: an extremum of y, a change of regime, a jump of C(t) or gamma(t)."""
@@ -36,7 +53,6 @@ COMPLETE, TOO_MANY_STEPS, TOO_MANY_EVENTS, DIVERGED = range(4)
 """Outcomes of `propagate`."""
 
 _REST = 1e-14  # velocities and accelerations below this are rounding errors of a body at rest
-_NARROWEST = 1e-8  # share of a step; roots closer than this are not separated
 _SAMPLE_EDGE = 1e-9  # share of the sampling interval
 _MOST_STEPS_PER_SEGMENT = 1000
 _FARTHEST = 1e9
@@ -82,78 +98,8 @@ def vector_field(state, direction, c, offset, g, law, bearings):
     elastic = c * (state[0] - offset)
     normal = elastic + (law[0] + (law[1] * direction + law[2] * v) * v) * v
     bearing = -bearings[1] * state[2] - bearings[2] * state[3]
-    rates = np.empty(SIZE)
-    rates[0] = v
-    rates[1] = 1.0 + g * elastic - (1.0 + bearings[0]) * normal + bearing
-    rates[2] = state[3]
-    rates[3] = bearing - bearings[0] * normal
-    return rates
-
-
-@inner
-def value_and_slope(polynomial, s):
-    """Return a polynomial, lowest coefficient first, and its slope at `s`."""
-    value, slope = 0.0, 0.0
-    for k in range(polynomial.size - 1, -1, -1):
-        slope = slope * s + value
-        value = value * s + polynomial[k]
-    return value, slope
-
-
-@inner
-def root_between(polynomial, low, high):
-    """Return the root of a polynomial that is monotone between `low` and `high`."""
-    falling = value_and_slope(polynomial, low)[0] > value_and_slope(polynomial, high)[0]
-    s = 0.5 * (low + high)
-    for _ in range(80):
-        value, slope = value_and_slope(polynomial, s)
-        if value == 0.0:
-            break
-        if (value > 0.0) == falling:
-            low = s
-        else:
-            high = s
-        following = s - value / slope if slope != 0.0 else low
-        if not low < following < high:
-            following = 0.5 * (low + high)
-        if abs(following - s) <= 1e-16 * high:
-            s = following
-            break
-        s = following
-    return s
-
-
-@inner
-def first_root(polynomial, end):
-    """Return the first change of sign of a polynomial in (0; end), or infinity.
-
-    A bound of the second derivative proves that a piece of the interval holds no root, or at most
-    one. Other pieces are halved. A root at 0 itself does not count.
-    """
-    first = 0
-    while first < polynomial.size - 1 and polynomial[first] == 0.0:
-        first += 1
-    f = polynomial[first:]
-    bend = 0.0
-    for k in range(f.size - 1, 1, -1):
-        bend = bend * end + k * (k - 1.0) * abs(f[k])
-    low, width = 0.0, end
-    while low < end:
-        width = min(width, end - low)
-        half = 0.5 * width
-        value, slope = value_and_slope(f, low + half)
-        curved = bend * half
-        if abs(value) <= (abs(slope) + 0.5 * curved) * half:
-            if abs(slope) > curved:
-                before, after = value_and_slope(f, low)[0], value_and_slope(f, low + width)[0]
-                if (before > 0.0) != (after > 0.0):
-                    return root_between(f, low, low + width)
-            elif width > _NARROWEST * end:
-                width = half
-                continue
-        low += width
-        width *= 2.0
-    return np.inf
+    acceleration = 1.0 + g * elastic - (1.0 + bearings[0]) * normal + bearing
+    return v, acceleration, state[3], bearing - bearings[0] * normal
 
 
 @inner
@@ -179,6 +125,37 @@ def _level_ahead(regime, direction, backlash):
     if regime == CONTACT_LOSS:
         return -backlash if direction < 0.0 else 0.0
     return -backlash if direction > 0.0 else -np.inf
+
+
+@inner
+def _turns_nowhere(velocity, step, v, a):
+    """Return whether a bound of v'' proves that v has no root, near none of its evenly set places.
+
+    Parameters
+    ----------
+    velocity : ndarray
+        Polynomial of v.
+    v, a : lanes
+        v and v' at `WIDEST` places from 0 to `step`.
+    """
+    bend = 0.0
+    for k in range(ORDER, 1, -1):
+        bend = bend * step + k * (k - 1.0) * abs(velocity[k])
+    half = 0.5 * step / (WIDEST - 1)
+    return not any_lane(magnitude(v) <= (magnitude(a) + 0.5 * bend * half) * half)
+
+
+@inner
+def _least_force(like, y, v, c, law, regime, forces):
+    """Return the least force between flanks that touch with these y and v; `forces` is room."""
+    speed = magnitude(v)
+    slope = fma(speed, spread(like, law[2]), spread(like, law[1]))
+    damper = v * fma(slope, speed, spread(like, law[0]))
+    store_at(forces, 0, regime * fma(spread(like, c), y, damper))
+    least = forces[0]
+    for place in range(1, WIDEST):
+        least = min(least, forces[place])
+    return least
 
 
 @inner
@@ -226,10 +203,17 @@ def propagate(
     least_force : float
         Least force between flanks that touch; infinity if none do.
     """
-    motion = np.empty((SIZE, ORDER + 1))
-    deviations = np.empty((ORDER + 1, SIZE * DEVIATIONS))
-    slope, square, push = np.zeros(ORDER + 1), np.zeros(ORDER + 1), np.zeros(DEVIATIONS)
-    heights, speeds = np.empty(FORCE_PLACES), np.empty(FORCE_PLACES)
+    room = np.zeros((N_ROWS + 1) * WIDEST)
+    first = -room.ctypes.data % (8 * WIDEST) // 8  # no row straddles two cache lines
+    series = room[first : first + N_ROWS * WIDEST].reshape((N_ROWS, WIDEST))
+    like, work = zeros8(), pointer_to(series)
+    height, velocity = series[Y : Y + ORDER + 1, 0], series[V : V + ORDER + 1, 0]
+    square, now = series[SQUARE : SQUARE + ORDER, 0], series[: RATE + 1 : ORDER + 1]
+    place = now[:, 0]
+    place[:] = state
+    now[:, 1 : DEVIATIONS + 1] = jacobian
+    places = lane_numbers(like) * (1.0 / (WIDEST - 1))
+    deviates, forces = lane_numbers(like) > spread(like, 0.0), np.empty(WIDEST)
     front = np.zeros(SIZE)
     front[0] = 1.0
     regime = CONTACT_LOSS
@@ -252,12 +236,12 @@ def propagate(
             if n_events == len(events):
                 return TOO_MANY_EVENTS, n_events, damping, least_force
             old, _ = _touching(regime, backlash, previous[1])
-            sign = np.sign(state[1])
-            before = vector_field(state, sign, old, offset, previous[2], law, bearings)
-            after = vector_field(state, sign, c, offset, g, law, bearings)
+            sign = np.sign(velocity[0])
+            before = vector_field(place, sign, old, offset, previous[2], law, bearings)
+            after = vector_field(place, sign, c, offset, g, law, bearings)
             event = events[n_events]
-            event[TIME], event[KIND], event[HEIGHT] = begun, SWITCH, state[0]
-            event[VELOCITY], event[BEFORE], event[AFTER] = state[1], before[1], after[1]
+            event[TIME], event[KIND], event[HEIGHT] = begun, SWITCH, height[0]
+            event[VELOCITY], event[BEFORE], event[AFTER] = velocity[0], before[1], after[1]
             event[REGIME], event[SEGMENT] = regime, number
             n_events += 1
         since = 0.0
@@ -265,71 +249,79 @@ def propagate(
             steps += 1
             if steps > visits * _MOST_STEPS_PER_SEGMENT:
                 return TOO_MANY_STEPS, n_events, damping, least_force
-            if not abs(state[0]) + abs(state[2]) < _FARTHEST:
+            if not abs(height[0]) + abs(series[B, 0]) < _FARTHEST:
                 return DIVERGED, n_events, damping, least_force
-            rates = vector_field(state, np.sign(state[1]), c, offset, g, law, bearings)
-            direction = _direction(state, rates)
-            at_rest = abs(state[1]) <= _REST and abs(rates[1]) <= _REST
-            motion[:, 0] = state
-            deviations[0] = jacobian.reshape(SIZE * DEVIATIONS)
-            expand(motion, deviations, slope, square, push, direction, c, offset, g, law, bearings)
-            step = min(longest_step(motion, deviations, tolerance, longest), length - since)
+            rates = vector_field(place, np.sign(velocity[0]), c, offset, g, law, bearings)
+            direction = _direction(place, rates)
+            at_rest = abs(velocity[0]) <= _REST and abs(rates[1]) <= _REST
+            begin = height[0]
+            height[0] -= offset
+            expand(like, work, direction, c, g, law, bearings)
+            step = longest_step(like, work, tolerance, min(longest, length - since))
+            y, v, a = motion_at(like, work, places * step)
             kind = -1
             # Up to the first extremum y is monotone, so its value there shows whether it has
             # passed the level ahead.
-            turn = np.inf if at_rest else first_root(motion[1], step)
-            if turn < step:
-                step, kind = turn, TURN
+            if not at_rest and not _turns_nowhere(velocity, step, v, a):
+                turn = first_root(velocity, step)
+                if turn < step:
+                    step, kind = turn, TURN
             level = _level_ahead(regime, direction, backlash)
-            if not at_rest and direction * (value_and_slope(motion[0], step)[0] - level) > 0.0:
-                motion[0, 0] -= level
-                step, kind = root_between(motion[0], 0.0, step), CROSSING
-                motion[0, 0] += level
+            if not at_rest and direction * (value_and_slope(height, step)[0] + offset - level) > 0:
+                height[0] -= level - offset
+                step, kind = root_between(height, 0.0, step), CROSSING
+                height[0] += level - offset
             while n_samples < len(samples):
                 s = n_samples * spacing - begun - since
                 if s >= step - _SAMPLE_EDGE * spacing:
                     break
                 s = max(s, 0.0)
-                samples[n_samples, 0] = value_and_slope(motion[0], s)[0]
-                velocity, acceleration = value_and_slope(motion[1], s)
-                samples[n_samples, 1], samples[n_samples, 2] = velocity, acceleration
+                samples[n_samples, 0] = value_and_slope(height, s)[0] + offset
+                samples[n_samples, 1], samples[n_samples, 2] = value_and_slope(velocity, s)
                 samples[n_samples, 3] = regime
                 n_samples += 1
             if regime != CONTACT_LOSS:
-                least = least_force_in(
-                    motion, step, direction, c, offset, law, regime, heights, speeds
-                )
+                if kind != -1:
+                    y, v, a = motion_at(like, work, places * step)
+                least = _least_force(like, y, v, c, law, regime, forces)
                 least_force = min(least_force, least)
-            total = 0.0
-            for k in range(ORDER, -1, -1):
-                total = total * step + slope[k] / (k + 1.0)
-            damping += total * step
-            for row in range(SIZE):
-                state[row] = value_and_slope(motion[row], step)[0]
-            write_deviations(deviations, step, jacobian)
+            if law[2] != 0.0:
+                total = 0.0
+                for k in range(ORDER - 1, -1, -1):
+                    total = total * step + square[k] / (k + 1.0)
+                damping += 3.0 * law[2] * total * step
+            advance(like, work, step)
+            height[0] += offset
             since = length if kind == -1 and step == length - since else since + step
+            if kind == TURN:
+                velocity[0] = 0.0
+            elif kind == CROSSING:
+                height[0] = level
+            damping += law[0] * step + 2.0 * law[1] * abs(height[0] - begin)
             if kind == -1:
                 continue
             if n_events == len(events):
                 return TOO_MANY_EVENTS, n_events, damping, least_force
-            if kind == TURN:
-                state[1] = 0.0
-            else:
-                state[0] = level
-            before = vector_field(state, direction, c, offset, g, law, bearings)
+            before = vector_field(place, direction, c, offset, g, law, bearings)
             if kind == CROSSING:
                 regime += 1 if direction > 0.0 else -1
                 c, offset = _touching(regime, backlash, segments[number, 1])
                 law = laws[abs(regime)]
-            after = vector_field(state, direction, c, offset, g, law, bearings)
-            if kind == CROSSING and state[1] != 0.0:
-                jacobian[:, :] = saltation(before, after, front) @ jacobian
+            after = vector_field(place, direction, c, offset, g, law, bearings)
+            if kind == CROSSING and velocity[0] != 0.0:
+                jump = saltation(np.array(before), np.array(after), front)
+                apart = select(deviates, load(like, work, Y), spread(like, 0.0))
+                store(work, V, fma(apart, spread(like, jump[1, 0]), load(like, work, V)))
+                store(work, RATE, fma(apart, spread(like, jump[3, 0]), load(like, work, RATE)))
             event = events[n_events]
-            event[TIME], event[KIND], event[HEIGHT] = begun + since, kind, state[0]
-            event[VELOCITY], event[BEFORE], event[AFTER] = state[1], before[1], after[1]
+            event[TIME], event[KIND], event[HEIGHT] = begun + since, kind, height[0]
+            event[VELOCITY], event[BEFORE], event[AFTER] = velocity[0], before[1], after[1]
             event[REGIME], event[SEGMENT] = regime, number
             n_events += 1
         begun += length
-        rates = vector_field(state, np.sign(state[1]), c, offset, g, law, bearings)
-        jacobian[:, SIZE] += length * rates
+        rates = vector_field(place, np.sign(velocity[0]), c, offset, g, law, bearings)
+        for row in range(SIZE):
+            now[row, DEVIATIONS] += length * rates[row]
+    state[:] = place
+    jacobian[:, :] = now[:, 1 : DEVIATIONS + 1]
     return COMPLETE, n_events, damping, least_force
