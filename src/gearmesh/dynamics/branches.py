@@ -7,7 +7,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from gearmesh.dynamics.continuation import Curve, Family, Point, stretches
+from gearmesh.dynamics.continuation import Curve, Family, Point, clear_phase, stretches
 from gearmesh.dynamics.shots import Shot
 from gearmesh.dynamics.special_points import SpecialPoint, special_points
 from gearmesh.dynamics.walks import LONGEST_STEP, Piece, joined, points_of, walk
@@ -104,7 +104,7 @@ def follow(
     if not low <= value <= high:
         raise NoOrbit(f"{parameter} = {value:.6g} of the orbit is outside {low:.6g} to {high:.6g}")
     phase = orbit.problem.initial_phase
-    moved = orbit.at_phase(orbit.clear_phase())
+    moved = orbit.at_phase(clear_phase(orbit))
     curve = Curve(
         family,
         orbit.periods,
@@ -163,7 +163,7 @@ def double_period(point: SpecialPoint, family: Family | None = None) -> Shot:
     """
     ((parameter, value),) = point.parameters.items()
     family = family or field_family(point.orbit.problem, parameter)
-    single = point.orbit.at_phase(point.orbit.clear_phase())
+    single = point.orbit.at_phase(clear_phase(point.orbit))
     phase, stretched = single.problem.initial_phase, stretches(family, value)
     curve = Curve(family, 2 * single.periods, (1.0,), phase, single, stretches=stretched)
     across = np.linalg.svd(single.monodromy + np.eye(len(single.monodromy)))[2][-1]

@@ -94,7 +94,11 @@ def chart_of(problem: Problem) -> Chart:
     if columns[ROTATION_2, 0] != 0.0:
         return Chart(columns, ABSENT)
     columns[[ROTATION_3, ROTATION_2], :2] = [[0.5, 0.5], [-0.5, 0.5]]
-    return Chart(columns, HELD if problem.has_run_out else FREE)
+    if problem.has_run_out:
+        return Chart(columns, HELD)
+    if any(problem.terms.torsional_damping):
+        return Chart(columns, FREE)
+    return Chart(columns[:, 1:], ABSENT)
 
 
 def with_moments(problem: Problem, moments: tuple[float, float]) -> Problem:

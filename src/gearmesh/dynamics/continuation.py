@@ -22,6 +22,7 @@ Family = Callable[..., Problem]
 _MOST_CORRECTIONS = 12
 _DIFFERENCE = 1e-5
 _SHORTEST_STEP = 1e-7
+_PLACES = 64
 _LEAST_ALIGNMENT = 0.97  # cosine of the angle between neighbouring tangents
 _LARGEST_CORRECTION = 0.3  # of a step
 
@@ -232,3 +233,19 @@ def stretches(family: Family, value: float) -> bool:
     """Return whether the only parameter of a family is nu."""
     here, there = family(value), family(1.001 * value)
     return here.nu == value and there == replace(here, nu=1.001 * value)
+
+
+def clear_phase(orbit: Shot) -> float:
+    """Return a mesh phase at which the orbit is far from the ends of its regimes.
+
+    The phase of the orbit's state is kept if it is at least half as far from them as the best
+    phase, or if mesh periods differ, because it fixes the angles of the shafts.
+    """
+    phase = orbit.problem.initial_phase
+    if orbit.repeats_after > 1:
+        return phase
+    course = orbit.time_course(_PLACES)
+    away = np.minimum(np.abs(course.y), np.abs(course.y + orbit.problem.backlash))
+    if away[0] < 0.5 * away.max():
+        phase += int(np.argmax(away)) / _PLACES
+    return float(phase % 1.0)

@@ -27,7 +27,7 @@ from gearmesh.errors import NoOrbit
 from gearmesh.model.contact import regime_of
 from gearmesh.model.motion import start
 from gearmesh.model.problem import Problem, State
-from gearmesh.solvers.full.runs import integrate
+from gearmesh.solvers.full.runs import advance, integrate
 from gearmesh.solvers.reduced.variational import EVENT_SIZE
 from gearmesh.solvers.response import Response
 
@@ -244,17 +244,27 @@ class GeneralOrbit:
         NoOrbit
             If the motion cannot be integrated.
         """
+        if chart_of(problem).columns.shape != self.chart.columns.shape:
+            raise NoOrbit("other coordinates are needed there: a term appears or vanishes")
         return _shot(problem, state, periods, self.angle)
 
-    def clear_phase(self) -> float:
-        """Return the initial phase: the general solver takes the state at no other."""
-        return self.problem.initial_phase
-
     def at_phase(self, phase: float) -> "GeneralOrbit":
-        """Return the orbit, whose state is taken at its initial phase only."""
-        if phase != self.problem.initial_phase:
-            raise NoOrbit("the general solver takes the state at the initial phase only")
-        return self
+        """Return the orbit with its state taken at another mesh phase.
+
+        Raises
+        ------
+        NoOrbit
+            If mesh periods differ: then the phase fixes the angles of the shafts.
+        """
+        share = (phase - self.problem.initial_phase) % 1.0
+        if share == 0.0:
+            return self
+        six = advance(replace(self.held, initial_state=self.initial_state), share, _TOLERANCE)
+        if six is None or self.repeats_after > 1:
+            raise NoOrbit("the state of the orbit can be taken at no other phase")
+        place = self.chart.place_of_six(six)
+        problem = replace(self.problem, initial_phase=phase)
+        return _shot(problem, self.chart.unknowns(place), self.periods, float(place[0]))
 
 
 def common_period(problem: Problem) -> int:

@@ -46,7 +46,6 @@ FARTHEST = 100.0
 
 _MOST_CORRECTIONS = 40
 _SHORTEST_CORRECTION = 1.0 / 1024.0
-_PLACES = 64  # mesh phases among which a clear one is sought
 # States closer than this count as the same, so an orbit that returns so early has a shorter period.
 _SAME = 1e-8
 # An orbit without damping is unstable if a multiplier exceeds 1 in size by more than this.
@@ -268,19 +267,6 @@ class Orbit:
         state = advance(self.problem, self.state, share)
         problem = replace(self.problem, initial_phase=phase)
         return Orbit(problem, self.periods, state, passage(problem, state, self.periods))
-
-    def clear_phase(self) -> float:
-        """Return a mesh phase at which the orbit is far from the ends of its regimes.
-
-        The phase of the orbit's state is kept if it is at least half as far from them as the best
-        phase.
-        """
-        course = self.time_course(_PLACES)
-        away = np.minimum(np.abs(course.y), np.abs(course.y + self.problem.backlash))
-        phase = self.problem.initial_phase
-        if away[0] < 0.5 * away.max():
-            phase += int(np.argmax(away)) / _PLACES
-        return float(phase % 1.0)
 
     def time_course(self, samples_per_period: int = 256) -> TimeCourse:
         """Return the time course, with `samples_per_period` samples in a mesh period."""

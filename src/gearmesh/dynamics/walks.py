@@ -6,7 +6,7 @@ from typing import NamedTuple
 import numpy as np
 from scipy.optimize import brentq
 
-from gearmesh.dynamics.continuation import Curve, Point
+from gearmesh.dynamics.continuation import Curve, Point, clear_phase
 from gearmesh.dynamics.orbits import FARTHEST
 from gearmesh.dynamics.special_points import flip_test
 from gearmesh.errors import NoOrbit
@@ -95,7 +95,7 @@ def _walk(piece: Piece, limits: Limits, longest: float) -> Walk:
     for _ in range(MOST_POINTS):
         curve, point = pieces[-1].curve, pieces[-1].points[-1]
         try:
-            phase = point.orbit.clear_phase()
+            phase = clear_phase(point.orbit)
             if phase != curve.phase:
                 curve, point = curve.moved_to(phase, point)
                 pieces.append(Piece(curve, [point]))
