@@ -14,6 +14,7 @@ from problems import problem
 
 from gearmesh.model.contact import CONTACT_LOSS, INVERSE_MESH
 from gearmesh.model.functions import Harmonic
+from gearmesh.model.motion import state_of
 from gearmesh.model.problem import GeneralTerms, Problem, ToothFactor, Wheel
 from gearmesh.solvers.full.runs import integrate
 
@@ -45,6 +46,7 @@ def unequal(nu=0.7, name="c-both", terms=None, **changes) -> Problem:
     return pair(nu, name, terms, **{"wheels": wheels, **of_pinion, **changes})
 
 
+RATES = np.array([0.2, 0.1, -0.05, 0.0, 0.1, 0.05])
 RUN_OUT = {"eccentricity_3": 0.5, "eccentricity_2": 0.3, "eccentricity_angle": 1.0}
 ONCE_A_TURN = (Harmonic(1.0 / 20, 0.1, 0.2),)
 TORQUE = {
@@ -132,6 +134,9 @@ CASES = {
         contact_ratio=2.4,
         friction_coefficient=0.0,
         **RUN_OUT,
+    ),
+    "six coordinates at the start, two wheels": unequal(
+        0.8, initial_state=state_of(unequal(), np.array([0.9, 0.4, 0.3, -0.2, 0.1, 0.0]), RATES)
     ),
     "everything": unequal(
         0.85,
