@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from gearmesh.dynamics import general_orbits, orbits
+from gearmesh.dynamics import general_search, orbits
 from gearmesh.dynamics.general_orbits import GeneralOrbit
 from gearmesh.dynamics.shots import Shot
 from gearmesh.dynamics.starts import coordinates
@@ -201,5 +201,5 @@ def find_orbit(
     if is_reducible(problem):
         found = orbits.find_orbit(problem, periods, None if begun is None else coordinates(begun))
     else:
-        found = general_orbits.find_orbit(replace(problem, initial_state=begun), periods)
+        found = general_search.find_orbit(replace(problem, initial_state=begun), periods)
     return Orbit(pair, chosen, frequency, found)
