@@ -217,7 +217,6 @@ def main() -> int:
     os.chdir(ROOT)
     sys.path.insert(0, str(SOURCE))
     os.environ["PYTHONPATH"] = str(SOURCE)
-    sys.dont_write_bytecode = True
     _load_libraries()
     state = _digest()
     count = dead = 0

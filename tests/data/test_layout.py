@@ -232,3 +232,35 @@ def test_figures_notebooks_and_what_the_report_reads():
     ]
     # A label may be a wildcard of Snakemake.
     assert paths.case_name("c-material", "{nu}") == "c-material/nu-{nu}.nc"
+
+
+def test_the_loads_of_a_run_stand_beside_its_numbers(pair):
+    """In these samples neither the stiffness nor the regime jumps."""
+    still = replace(SAMPLES, regime=np.ones(COUNT, int), stiffness=np.ones(COUNT))
+    run = replace(RUN, samples=still, located_contact_force=-0.5)
+    problem = pair.problem(variant("c-material"), 0.66)
+    columns = casefile.record(run, pair, problem)
+    force = still.force_normal
+    assert columns["dynamic_factor"] == force[-1]
+    newtons = {
+        "force_max": force[-1],
+        "force_min": force[0],
+        "least_contact_force": -0.5,
+        "force_bearing_3_max": still.force_bearing_3[-1],
+        "force_bearing_2_max": still.force_bearing_2[-1],
+        "force_normal": force,
+        "force_bearing_3": still.force_bearing_3,
+    }
+    for name, value in newtons.items():
+        np.testing.assert_allclose(columns[name], value * pair.static_force, rtol=1e-14)
+    assert columns["transmission_error_rms_rel"] == pytest.approx(np.sqrt(2.0))  # of 0 to 4
+    assert columns["transmission_error_range"] == pytest.approx(4.0 * pair.static_deflection)
+    assert columns["transmission_error_rel"].tolist() == still.transmission_error.tolist()
+    assert [field.name for field in casefile.fields_in(columns)][-len(casefile.LOAD_FIELDS) :] == [
+        field.name for field in casefile.LOAD_FIELDS
+    ]
+    failed = casefile.record(Response("diverged", 9.5), pair, problem)
+    assert np.isnan([failed[field.name] for field in casefile.LOAD_FIELDS]).all()
+    assert "force_normal" not in failed
+    rest = casefile.without_time_course(columns)
+    assert {"force_normal", "transmission_error_rel"} <= columns.keys() - rest.keys()

@@ -74,9 +74,9 @@ def test_what_is_not_stated_is_absent():
     assert terms == GeneralTerms()
     assert terms.torsional_damping == (0.0, 0.0)
     assert (terms.restoring_2, terms.restoring_3, terms.damping_power) == (0.0, 0.0, 0.0)
-    assert not terms.non_adhesive
+    assert terms.restoring_power == 1.0
     for field in fields(terms):
-        if field.name != "torsional_damping":
+        if field.name not in ("torsional_damping", "restoring_power"):
             assert not getattr(terms, field.name), field.name
     assert Mode(1, 0.5) == Mode(1, 0.5, 1, 1, False)
     assert elastic_force(2.0, 1.5, NORMAL_MESH, 4.0) == 3.0

@@ -125,7 +125,7 @@ def test_without_a_mode_the_branches_of_the_state_act(name):
             q[motion.ROTATION_3] += offset
             time = phase * one.period
             y, _ = afresh.relative_motion(one, time, [*q, *v])
-            gap = afresh.backlash(one, time)
+            gap = afresh.backlash(one, time, [*q, *v])
             regime = NORMAL_MESH if y >= 0 else INVERSE_MESH if y <= -gap else CONTACT_LOSS
             signs = (1, 1)
             if one.eccentricity_3 + one.eccentricity_2:

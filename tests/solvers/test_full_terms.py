@@ -106,7 +106,12 @@ CASES = {
         0.9, "b-both", BREATHING, backlash=0.5, friction_coefficient=0.0, **RUN_OUT
     ),
     "Hertz, contact loss": pair(0.85, "c-lubricant", {"restoring_power": 10 / 9}),
-    "Hertz, back flanks": pair(0.9, "b-both", {"restoring_power": 1.5, **SWING}, backlash=0.3),
+    "Hertz, back flanks, two wheels": unequal(
+        0.6,
+        "b-both",
+        {"restoring_power": 1.5, "torque_harmonics_3": (Harmonic(0.5, 2.5, 0.0),)},
+        backlash=0.3,
+    ),
     "backlash of the centres, back flanks": pair(0.9, "b-both", FOLLOWS, backlash=0.5),
     "backlash of the centres, back flanks, two wheels, run-out": unequal(
         0.9,

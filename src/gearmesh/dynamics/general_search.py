@@ -57,19 +57,21 @@ def _settled(problem: Problem, place: np.ndarray, common: int, periods: int) -> 
 
     If the mean rotation has to be held, a drive corrects it after every common period.
     """
-    chart = chart_of(problem)
-    angle, pushed, duration = float(place[0]), 0.0, common * problem.period
-    for _ in range(math.ceil(_TRANSIENT / common)):
+    chart, angle = chart_of(problem), float(place[0])
+    blocks = math.ceil(_TRANSIENT / common)
+    if chart.rotation != HELD:
+        moved = shot_from(problem, chart.unknowns(place), blocks * common, angle)
+        return shot_from(problem, chart.unknowns(moved.end), periods, angle)
+    pushed, duration = 0.0, common * problem.period
+    for _ in range(blocks):
         moved = shot_from(problem, chart.unknowns(place, pushed), common, angle)
+        gained, sped = (moved.end - moved.start)[[0, chart.n]].tolist()
+        pushed -= sped * duration
         place = moved.end.copy()
-        if chart.rotation == HELD:
-            gained, sped = (moved.end - moved.start)[[0, chart.n]]
-            pushed -= float(sped) * duration
-            place[0] = angle
-            place[chart.n] = moved.start[chart.n] - gained / duration + 0.5 * sped
-    return shot_from(
-        problem, chart.unknowns(place, pushed * (periods / common) ** 2), periods, angle
-    )
+        place[0] = angle
+        place[chart.n] = moved.start[chart.n] - gained / duration + 0.5 * sped
+    pushed *= (periods / common) ** 2
+    return shot_from(problem, chart.unknowns(place, pushed), periods, angle)
 
 
 def correct(orbit: GeneralOrbit) -> GeneralOrbit:

@@ -60,6 +60,9 @@ class Samples:
     F_st, `regime` as in `gearmesh.model.contact`. `force_normal` is the elastic and the damping
     force, `transmission_error` the sum of R_b phi of both wheels, and `force_bearing_3` and
     `force_bearing_2` what the bodies exert on their bearings along the mesh line.
+
+    `extremes` has the least and greatest `force_normal`, `transmission_error`, `force_bearing_3`
+    and `force_bearing_2`, shape (4, 2), where the solver has located them between the samples.
     """
 
     time: np.ndarray
@@ -75,6 +78,7 @@ class Samples:
     force_bearing_2: np.ndarray
     transmission_error: np.ndarray
     regime: np.ndarray
+    extremes: np.ndarray | None = None
 
 
 def _nothing() -> np.ndarray:

@@ -9,7 +9,7 @@ y_2.
 import numpy as np
 
 from gearmesh.model.friction import follows_run_out
-from gearmesh.model.motion import ROTATION_2, ROTATION_3, Y_2, Y_3
+from gearmesh.model.motion import ROTATION_2, ROTATION_3, Y_2, Y_3, Z_2, Z_3
 from gearmesh.model.problem import Problem
 from gearmesh.model.segments import segments
 from gearmesh.model.stiffness import touching_pairs
@@ -27,7 +27,7 @@ def embedding(problem: Problem) -> np.ndarray:
 
     The columns are orthogonal.
     """
-    if problem.has_run_out or problem.terms.backlash_follows_centres:
+    if problem.has_run_out:
         return np.eye(6)
     columns = []
     if any(problem.terms.torsional_damping):
@@ -39,7 +39,9 @@ def embedding(problem: Problem) -> np.ndarray:
         (wheel.body_mass, wheel.bearing_stiffness[0], wheel.bearing_damping_ratio[0])
         for wheel in (wheel_3, wheel_2)
     ]
-    if bodies[0] == bodies[1]:
+    if problem.terms.backlash_follows_centres:
+        columns += [{Y_3: 1.0}, {Y_2: 1.0}, {Z_3: 1.0}, {Z_2: 1.0}]
+    elif bodies[0] == bodies[1]:
         columns += [{Y_3: 0.5, Y_2: -0.5}]
     else:
         columns += [{Y_3: 1.0}, {Y_2: 1.0}]

@@ -17,7 +17,13 @@ import numpy as np
 from gearmesh.model.contact import CONTACT_LOSS, INVERSE_MESH, NORMAL_MESH, regime_of
 from gearmesh.model.motion import Z_2, Z_3
 from gearmesh.solvers.compilation import inner
-from gearmesh.solvers.full.measures import measure, record_extremum, sample, take_value
+from gearmesh.solvers.full.measures import (
+    locate_extremes,
+    measure,
+    record_extremum,
+    sample,
+    take_value,
+)
 from gearmesh.solvers.full.roots import (
     MAX_DEGREE,
     TABLE_SHAPE,
@@ -317,7 +323,8 @@ def run(
     variants : ndarray of int, shape (periods + 1,)
         Which kind of period each is: where single teeth have factors, periods differ.
     tape : tuple of ndarray
-        The fields of `gearmesh.solvers.full.tape.Tape` for the segments of every kind of period.
+        Numbers and branches of `gearmesh.solvers.full.recurrences.Recurrences` for the segments of
+        every kind of period.
     state : ndarray, shape (12,)
         Coordinates and, from the seventh place, rates at the start; at the end afterwards.
     modes : ndarray of `MODE`, shape (1,)
@@ -387,6 +394,7 @@ def run(
             expand_outputs(case, mode, tape, variant, per_period > 0, series)
             measure(case, mode, series, duration, summary)
             if per_period:
+                locate_extremes(case, series, duration, summary)
                 until = segment.end if event == SEGMENT_ENDED else mode.time + duration
                 sample(case, mode, series, until, samples, per_period, summary)
         _advance(case, mode, state, series, duration)

@@ -22,9 +22,9 @@ from gearmesh.solvers.compilation import persistent
 from gearmesh.solvers.full import kernel
 from gearmesh.solvers.full.coordinates import embedding, kinds_of_period, projected, signs_act
 from gearmesh.solvers.full.measures import SAMPLE, SUMMARY
+from gearmesh.solvers.full.recurrences import recurrences
 from gearmesh.solvers.full.roots import MAX_DEGREE
 from gearmesh.solvers.full.series import CASE, CONTINUED, MODE, SEGMENT
-from gearmesh.solvers.full.tape import tape
 from gearmesh.solvers.response import (
     EXTREMUM,
     LOOSENING,
@@ -95,7 +95,7 @@ def integrate(
         run.final_state(),
         companion,
         tolerance,
-        _samples(run.samples) if samples_per_period else None,
+        _samples(run.samples, run.summary["extremes"]) if samples_per_period else None,
         run.rotation_drift,
         float(run.summary["least_contact_force"]),
     )
@@ -166,14 +166,14 @@ class _Run:
         self.problem = problem
         self.embedding = embedding(problem)
         kinds, variants = kinds_of_period(problem)
-        recorded = tape(problem, kinds)
+        found = recurrences(problem, kinds, samples_per_period > 0)
         self._arguments = (
             _case(problem, tolerance, order, self.embedding.shape[1]),
             _segments(problem, share),
             variants,
-            tuple(recorded),
+            (found.numbers, found.branches),
         )
-        self._series = np.zeros((recorded.height, MAX_DEGREE + 1))
+        self._series = np.zeros((found.height, MAX_DEGREE + 1))
         self.extrema = np.zeros(0, EXTREMUM)
         self.start = np.concatenate(start(problem))
         self.start[ROTATION_3] += displacement
@@ -187,6 +187,7 @@ class _Run:
         summaries = np.zeros(1, SUMMARY)
         summaries["y_max"], summaries["y_min"] = -np.inf, np.inf
         summaries["least_contact_force"] = np.inf
+        summaries["extremes"] = np.inf, -np.inf
         self.summary = summaries[0]
         self.state = projected(self.start, self.embedding)
         self.mode = _mode(self.problem)
@@ -305,7 +306,7 @@ def _segments(problem: Problem, share: float) -> np.ndarray:
     return np.array(parts, SEGMENT)
 
 
-def _samples(rows: np.ndarray) -> Samples:
+def _samples(rows: np.ndarray, extremes: np.ndarray) -> Samples:
     columns = {name: rows[name].copy() for name in SAMPLE.fields or ()}
     regime = columns["regime"].astype(np.int8)
     return Samples(
@@ -322,4 +323,5 @@ def _samples(rows: np.ndarray) -> Samples:
         force_bearing_2=columns["bearing_2"],
         transmission_error=columns["transmission_error"],
         regime=regime,
+        extremes=extremes,
     )
