@@ -18,6 +18,7 @@ from gearmesh.dynamics.orbits import LARGEST_RESIDUAL
 from gearmesh.errors import NoOrbit
 from gearmesh.model.motion import start
 from gearmesh.model.problem import Problem
+from gearmesh.solvers.full.coordinates import signs_act
 
 _MOST_CORRECTIONS = 30
 _SHORTEST_CORRECTION = 1.0 / 64.0
@@ -42,7 +43,7 @@ def find_orbit(problem: Problem, periods: int = 1) -> GeneralOrbit:
     bare = replace(problem, initial_state=None)
     place = chart_of(problem).place_of_six(np.concatenate(start(problem)))
     if problem.initial_state is None:
-        return correct(_settled(bare, place, common, periods))
+        return correct(_settled(bare, place, periods))
     passed = problem.start_period % common
     if passed:
         rest = run_of(bare, problem.initial_state, common - passed, 0).final_state
@@ -52,25 +53,24 @@ def find_orbit(problem: Problem, periods: int = 1) -> GeneralOrbit:
     return correct(shot_from(bare, chart_of(problem).unknowns(place), periods, float(place[0])))
 
 
-def _settled(problem: Problem, place: np.ndarray, common: int, periods: int) -> GeneralOrbit:
+def _settled(problem: Problem, place: np.ndarray, periods: int) -> GeneralOrbit:
     """Return the motion at the end of a long run from a place.
 
-    If the mean rotation has to be held, a drive corrects it after every common period.
+    If the mean rotation has to be held, a drive corrects it after every period of the orbit.
     """
     chart, angle = chart_of(problem), float(place[0])
-    blocks = math.ceil(_TRANSIENT / common)
+    blocks = math.ceil(_TRANSIENT / periods)
     if chart.rotation != HELD:
-        moved = shot_from(problem, chart.unknowns(place), blocks * common, angle)
+        moved = shot_from(problem, chart.unknowns(place), blocks * periods, angle)
         return shot_from(problem, chart.unknowns(moved.end), periods, angle)
-    pushed, duration = 0.0, common * problem.period
+    pushed, duration = 0.0, periods * problem.period
     for _ in range(blocks):
-        moved = shot_from(problem, chart.unknowns(place, pushed), common, angle)
+        moved = shot_from(problem, chart.unknowns(place, pushed), periods, angle)
         gained, sped = (moved.end - moved.start)[[0, chart.n]].tolist()
         pushed -= sped * duration
         place = moved.end.copy()
         place[0] = angle
         place[chart.n] = moved.start[chart.n] - gained / duration + 0.5 * sped
-    pushed *= (periods / common) ** 2
     return shot_from(problem, chart.unknowns(place, pushed), periods, angle)
 
 
@@ -90,7 +90,10 @@ def correct(orbit: GeneralOrbit) -> GeneralOrbit:
             break
         orbit = candidate
     if not orbit.residual < LARGEST_RESIDUAL:
-        raise NoOrbit(f"Newton's method stops at a residual of {orbit.residual:.1e}")
+        reason = f"Newton's method stops at a residual of {orbit.residual:.1e}"
+        if signs_act(problem):
+            reason += "; friction with run-out often repeats after two revolutions only"
+        raise NoOrbit(reason)
     for shorter in range(orbit.repeats_after, periods, orbit.repeats_after):
         if periods % shorter == 0:
             end = ends(orbit.held, shorter)(orbit.start)
