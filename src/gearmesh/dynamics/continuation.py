@@ -7,24 +7,33 @@ arclength and not by a parameter.
 """
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
+from functools import cached_property
 
 import numpy as np
 
-from gearmesh.dynamics.orbits import LARGEST_RESIDUAL, ROUNDED, Orbit
+from gearmesh.dynamics.orbits import Orbit
 from gearmesh.errors import NoOrbit
 from gearmesh.model.problem import Problem
-from gearmesh.solvers.reduced.period_map import advance, passage
+from gearmesh.solvers.reduced import curves
+from gearmesh.solvers.reduced.curves import LARGEST_RESIDUAL, ROUNDED, is_clear
+from gearmesh.solvers.reduced.period_map import (
+    Passage,
+    Statement,
+    advance,
+    passage,
+    passage_of,
+    statement,
+    trace,
+)
 
 Family = Callable[..., Problem]
 """The problem at the values of the parameters."""
 
 _MOST_CORRECTIONS = 12
 _DIFFERENCE = 1e-5
-_SHORTEST_STEP = 1e-7
 _PLACES = 64
-_LEAST_ALIGNMENT = 0.97  # cosine of the angle between neighbouring tangents
-_LARGEST_CORRECTION = 0.3  # of a step
+_MOST_STEPS = 64  # in one call of the compiled code
 
 
 @dataclass(frozen=True)
@@ -42,14 +51,23 @@ class Point:
     determinant : float
         Determinant of the Jacobian of P^n(x) - x (and of the condition) in state and parameters,
         bordered by the tangent.
-    orbit : Orbit
+    passage : Passage
+        The motion over the period of the orbit.
+    curve : Curve
     """
 
     place: np.ndarray
     values: tuple[float, ...]
     tangent: np.ndarray
     determinant: float
-    orbit: Orbit
+    passage: Passage
+    curve: "Curve" = field(repr=False)
+
+    @cached_property
+    def orbit(self) -> Orbit:
+        """The orbit."""
+        problem = self.curve.problem(self.values)
+        return Orbit(problem, self.curve.periods, self.place[:4], self.passage)
 
     def reversed(self) -> "Point":
         """Return the same point, seen in the other direction along the curve."""
@@ -73,9 +91,9 @@ class Curve:
         passes an end of a regime at this very phase, because damping jumps there.
     condition : callable, optional
         A function of the orbit that is 0 along the curve. It is needed if two parameters vary.
-    stretches : bool
-        Whether nu is the only parameter that varies. Then the integration itself gives the
-        derivative with respect to the mesh period, without differences.
+    value : float, optional
+        A value of nu if nu is the only parameter that varies. Then the integration itself gives the
+        derivative with respect to the mesh period, and compiled code follows the curve.
     """
 
     family: Family
@@ -83,7 +101,11 @@ class Curve:
     units: tuple[float, ...]
     phase: float
     condition: Callable[[Orbit], float] | None = None
-    stretches: bool = False
+    value: float | None = None
+
+    @cached_property
+    def _stated(self) -> Statement:
+        return statement(self.problem((self.value or 0.0,)), self.periods)
 
     def point(self, place: np.ndarray, normal: np.ndarray, along: np.ndarray) -> Point:
         """Return the point of the curve in the plane through `place` with the given normal.
@@ -99,6 +121,9 @@ class Curve:
         NoOrbit
             If Newton's method does not converge.
         """
+        if self.value is not None:
+            point = self._traced(place, normal, _MOST_CORRECTIONS)
+            return point if point.tangent @ along > 0.0 else point.reversed()
         origin, best = place, np.inf
         orbit = self._orbit(place)
         gradients = self._gradients(place, orbit, rough=True)
@@ -110,7 +135,7 @@ class Curve:
             found, found_orbit = place, orbit
             if best < ROUNDED:
                 break
-            self._differentiate(orbit, gradients)
+            gradients[:4, :4] = orbit.passage.jacobian - np.eye(4)
             try:
                 correction = np.linalg.solve(
                     np.vstack([gradients, normal]), np.append(defect, normal @ (place - origin))
@@ -123,9 +148,33 @@ class Curve:
             raise NoOrbit(f"the corrector stops at a residual of {best:.1e}")
         return self._with_tangent(found, found_orbit, along)
 
+    def _traced(self, place: np.ndarray, normal: np.ndarray, corrections: int) -> Point:
+        """Return the point that compiled code finds."""
+        points, events, _ = trace(self._stated, place, normal, self.units[0], corrections)
+        point = self._found(points[0], events[0])
+        if point.passage.status != "complete":
+            raise NoOrbit(f"the motion ends with {point.passage.status}")
+        residual = np.abs(point.passage.end - point.place[:4]).max()
+        if corrections and not residual < LARGEST_RESIDUAL:
+            raise NoOrbit(f"the corrector stops at a residual of {residual:.1e}")
+        return point
+
+    def _found(self, point: np.ndarray, events: np.ndarray) -> Point:
+        """Return a point of the compiled code."""
+        return Point(
+            point[: curves.DIMENSIONS],
+            (float(point[4]) * self.units[0],),
+            point[curves.TANGENT : curves.DETERMINANT],
+            float(point[curves.DETERMINANT]),
+            passage_of(self._stated, self.units[0], point, events),
+            self,
+        )
+
     def beside(self, point: Point, length: float) -> Point:
         """Return the point at a small distance along the tangent, where the curve still is."""
         place = point.place + length * point.tangent
+        if self.value is not None:
+            return self._traced(place, point.tangent, 0)
         return self._with_tangent(place, self._orbit(place), point.tangent)
 
     def _with_tangent(self, place: np.ndarray, orbit: Orbit, along: np.ndarray) -> Point:
@@ -134,7 +183,7 @@ class Curve:
         if tangent @ along < 0.0:
             tangent = -tangent
         determinant = float(np.linalg.det(np.vstack([gradients, tangent])))
-        return Point(place, self._values(place), tangent, determinant, orbit)
+        return Point(place, self._values(place), tangent, determinant, orbit.passage, self)
 
     def at(self, orbit: Orbit, values: tuple[float, ...]) -> Point:
         """Return the point near `orbit` at a value of the first parameter, or near several.
@@ -158,33 +207,63 @@ class Curve:
         """Return the point one step ahead along the tangent."""
         return self.point(point.place + length * point.tangent, point.tangent, point.tangent)
 
-    def step_on(self, point: Point, length: float) -> tuple[Point, float]:
-        """Return the next point after `point` and the length of the step that reaches it.
+    def ahead(
+        self, point: Point, length: float, longest: float, limits: tuple[tuple[float, float], ...]
+    ) -> tuple[list[Point], float]:
+        """Return the next points after `point`, and the length of the step behind them.
 
-        The step is at most `length`, and shorter where the curve bends.
+        The first step is at most `length`, and shorter where the curve bends. Later ones grow. The
+        last point may be outside the limits or far away.
 
         Raises
         ------
         NoOrbit
             If the curve cannot be followed further.
         """
+        if self.value is None:
+            following, length = self._step_on(point, length)
+            size = max(following.orbit.y_max, -following.orbit.y_min)
+            grown = min(curves.GROWTH * length, longest * max(1.0, size / curves.LARGE))
+            return [following], grown
+        points, events, length = trace(
+            self._stated,
+            point.place,
+            point.tangent,
+            self.units[0],
+            _MOST_CORRECTIONS,
+            _MOST_STEPS,
+            length,
+            longest,
+            limits[0],
+        )
+        if len(points) == 1:
+            raise NoOrbit("it bends too sharply")
+        return [self._found(points[i], events[i]) for i in range(1, len(points))], length
+
+    def _step_on(self, point: Point, length: float) -> tuple[Point, float]:
+        """Return the next point after `point` and the length of the step that reaches it."""
         reason = "it bends too sharply"
-        while length > _SHORTEST_STEP:
+        while length > curves.SHORTEST_STEP:
             try:
                 following = self.step(point, length)
                 moved = following.place - point.place - length * point.tangent
-                straight = following.tangent @ point.tangent > _LEAST_ALIGNMENT
-                if straight and np.linalg.norm(moved) < _LARGEST_CORRECTION * length:
+                straight = following.tangent @ point.tangent > curves.LEAST_ALIGNMENT
+                if straight and np.linalg.norm(moved) < curves.LARGEST_CORRECTION * length:
                     return following, length
             except NoOrbit as error:
                 reason = str(error)
             length *= 0.5
         raise NoOrbit(reason)
 
+    def problem(self, values: tuple[float, ...]) -> Problem:
+        """Return the problem at values of the parameters, with its state taken at the phase."""
+        problem = self.family(*values)
+        if problem.initial_phase == self.phase and problem.initial_state is None:
+            return problem
+        return replace(problem, initial_phase=self.phase, initial_state=None)
+
     def _orbit(self, place: np.ndarray) -> Orbit:
-        problem = self.family(*self._values(place))
-        if problem.initial_phase != self.phase or problem.initial_state is not None:
-            problem = replace(problem, initial_phase=self.phase, initial_state=None)
+        problem = self.problem(self._values(place))
         moved = passage(problem, place[:4], self.periods)
         if moved.status != "complete":
             raise NoOrbit(f"the motion ends with {moved.status}")
@@ -204,9 +283,7 @@ class Curve:
         change the point to which they converge.
         """
         gradients = np.zeros((len(place) - 1, len(place)))
-        self._differentiate(orbit, gradients)
-        if self.stretches:
-            return gradients
+        gradients[:4, :4] = orbit.passage.jacobian - np.eye(4)
         for i in range(4 if self.condition is None else 0, len(place)):
             away = _DIFFERENCE * np.eye(len(place))[i]
             ahead = self._defect(self._orbit(place + away))
@@ -215,17 +292,11 @@ class Curve:
             gradients[0 if i >= 4 else 4 :, i] = difference[0 if i >= 4 else 4 :]
         return gradients
 
-    def _differentiate(self, orbit: Orbit, gradients: np.ndarray) -> None:
-        """Write the gradients that the integration gives."""
-        gradients[:4, :4] = orbit.passage.jacobian - np.eye(4)
-        if self.stretches:
-            gradients[:, 4] = orbit.passage.stretched * (-self.units[0] / orbit.problem.nu)
 
-
-def stretches(family: Family, value: float) -> bool:
-    """Return whether the only parameter of a family is nu."""
+def frequency(family: Family, value: float) -> float | None:
+    """Return `value` if the only parameter of a family is nu."""
     here, there = family(value), family(1.001 * value)
-    return here.nu == value and there == replace(here, nu=1.001 * value)
+    return value if here.nu == value and there == replace(here, nu=1.001 * value) else None
 
 
 def at_phase(orbit: Orbit, phase: float) -> Orbit:
@@ -244,9 +315,9 @@ def clear_phase(orbit: Orbit) -> float:
     The phase of the orbit's state is kept if it is at least half as far from them as the best
     phase.
     """
-    course = orbit.time_course(_PLACES)
-    away = np.minimum(np.abs(course.y), np.abs(course.y + orbit.problem.backlash))
-    phase = orbit.problem.initial_phase
-    if away[0] < 0.5 * away.max():
+    phase, backlash = orbit.problem.initial_phase, orbit.problem.backlash
+    if not is_clear.py_func(orbit.y, orbit.y_max, orbit.y_min, backlash):
+        course = orbit.time_course(_PLACES)
+        away = np.minimum(np.abs(course.y), np.abs(course.y + backlash))
         phase += int(np.argmax(away)) / _PLACES
     return float(phase % 1.0)
