@@ -106,7 +106,7 @@ def _residual(point):
     return largest if largest < np.inf else np.inf
 
 
-@inner
+@inner(inline="always")
 def _evaluate(statement, unit, point, events, samples, per_period, segments):
     """Move from the place of a point over the period, and write what it gives."""
     begun, laws, backlash, bearings, visits, longest, tolerance, nu = statement
@@ -141,7 +141,7 @@ def _evaluate(statement, unit, point, events, samples, per_period, segments):
             point[Y_MIN] = min(point[Y_MIN], event[HEIGHT])
 
 
-@inner
+@inner(inline="always")
 def _land(statement, unit, points, events, row, origin, normal, corrections, room):
     """Correct the place of a point in the plane through `origin`; return whether it is an orbit.
 
@@ -229,10 +229,8 @@ def is_clear(y, y_max, y_min, backlash):
     return min(abs(y), abs(y + backlash)) >= 0.5 * best
 
 
-@inner
-def trace(
-    statement, unit, corrections, length, longest, limits, points, events, samples, per_period
-):
+@inner(inline="always")
+def trace(statement, unit, corrections, length, longest, limits, points, events, samples):
     """Correct the first point, and follow the curve from there as far as there are rows.
 
     Parameters
@@ -252,8 +250,8 @@ def trace(
         The first row holds a place, and in place of the tangent the normal of the plane in which
         the point is searched for. The last row is room.
     events : ndarray, shape (n + 1, room, EVENT_SIZE)
-    samples, per_period
-        As for `propagate`.
+    samples : ndarray, shape (n, 4)
+        As for `propagate`, over all visits.
 
     Returns
     -------
@@ -264,6 +262,7 @@ def trace(
         Length of the next step; `SHORTEST_STEP` or less if no step succeeds.
     """
     segments, matrix = np.empty_like(statement[0]), np.empty((DIMENSIONS, DIMENSIONS + 2))
+    per_period = len(samples) * len(segments) // statement[4]
     room = samples, per_period, segments, matrix
     normal, origin = points[0, TANGENT : TANGENT + DIMENSIONS].copy(), np.empty(DIMENSIONS)
     nodes, table = np.empty(2 * _HISTORY), np.empty(2 * _HISTORY)

@@ -35,9 +35,11 @@ FIXED = np.eye(curves.DIMENSIONS)[SIZE]
 
 def _build_trace(key: str, cache: bool) -> Callable[..., tuple[int, float]]:
     @njit(cache=cache, nogil=True)
-    def compiled(*arguments):  # type: ignore[no-untyped-def]
+    def compiled(stated, unit, corrections, length, longest, limits, points, events, samples):  # type: ignore[no-untyped-def]
         key  # noqa: B018 (see persistent)
-        return curves.trace(*arguments)
+        return curves.trace(
+            stated, unit, corrections, length, longest, limits, points, events, samples
+        )
 
     return compiled
 
@@ -171,7 +173,6 @@ def trace(
         points,
         events,
         samples,
-        len(samples) // periods,
     )
     return points[:count], events, length
 
