@@ -35,6 +35,9 @@ reproduce: $(STAMP) ## the paper: cases, datasets, figures, ledger and report
 	@$(SNAKEMAKE)
 	@cat results/paper/verdict.txt
 
+# The tests start many processes, which would all compile every module for themselves.
+test test-fast: export PYTHONDONTWRITEBYTECODE :=
+
 test: $(STAMP) ## the whole test suite
 	$(BIN)/python -m pytest -n 2 --dist loadfile --no-loadscope-reorder
 

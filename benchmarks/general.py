@@ -1,9 +1,9 @@
 """What the general solver costs beside the reduced one: ``python -m benchmarks.general``.
 
 The 27 single runs of `benchmarks.cases`, each in a call of its own, with estimates of the errors,
-as the pipeline calls the solvers. Times are CPU times, the least of several rounds. The record of
-the equations (`gearmesh.solvers.full.tape`) is made anew for every kind of law, not for every mesh
-frequency; its time is listed apart.
+as the pipeline calls the solvers. Times are CPU times, the least of several rounds. The machine
+code of the equations (`gearmesh.solvers.full.recurrences`) is made once in a process for every kind
+of law, not for every mesh frequency or value of a parameter; its time is listed apart.
 """
 
 import time
@@ -12,7 +12,7 @@ from dataclasses import replace
 
 from benchmarks.cases import singles
 from gearmesh.model.problem import Problem, Wheel
-from gearmesh.solvers.full import coordinates, tape
+from gearmesh.solvers.full import coordinates, recurrences
 from gearmesh.solvers.full.runs import integrate
 from gearmesh.solvers.simulation import simulate
 
@@ -33,8 +33,8 @@ def main() -> None:
         spent = _least(lambda problem: integrate(problem, TOLERANCE), changed)
         each = 1e3 * spent / len(runs)
         print(f"general solver, {name}: {each:.2f} ms a run, {spent / reduced:.1f} times as long")
-    record = _least(_record, runs[:1])
-    print(f"record of the equations of one law: {1e3 * record:.1f} ms")
+        made = _least(_prepare, changed[:1])
+        print(f"    machine code of the equations of one law: {1e3 * made:.0f} ms")
 
 
 def _geared(problem: Problem) -> Problem:
@@ -51,10 +51,11 @@ def _geared(problem: Problem) -> Problem:
     return replace(problem, wheels=(pinion, wheel))
 
 
-def _record(problem: Problem) -> None:
+def _prepare(problem: Problem) -> None:
     phases, _ = coordinates.kinds_of_period(problem)
-    tape._recorded.cache_clear()
-    tape.tape(problem, phases)
+    recurrences._recurrences.cache_clear()
+    recurrences._compiled.cache_clear()
+    recurrences.recurrences(problem, phases, sampled=False)
 
 
 def _least(solve: Callable[[Problem], object], problems: list[Problem]) -> float:

@@ -2,7 +2,6 @@
 
 import fcntl
 import os
-import time
 from pathlib import Path
 
 import pytest
@@ -31,11 +30,19 @@ SLOW = (
 """Beginnings of the paths of tests that `make test-fast` leaves out."""
 
 
+FIRST = ("workflow", "solvers")
+"""Those that take longest, and compile; started last, they would keep one process alone busy."""
+
+
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
     for item in items:
-        place = item.path.relative_to(ROOT / "tests").as_posix()
-        if place.startswith(SLOW):
+        if _place(item).startswith(SLOW):
             item.add_marker(pytest.mark.slow)
+    items.sort(key=lambda item: not _place(item).startswith(FIRST))
+
+
+def _place(item: pytest.Item) -> str:
+    return item.path.relative_to(ROOT / "tests").as_posix()
 
 
 @pytest.fixture(scope="session")
@@ -97,8 +104,6 @@ def smoke(tmp_path_factory: pytest.TempPathFactory) -> Project:
 def tiny(tmp_path_factory: pytest.TempPathFactory) -> Project:
     """A study of 14 cases with its datasets, made by the pipeline."""
     project = Project.create(tmp_path_factory.mktemp("tiny") / "project", "config/tiny.yaml")
-    start = time.monotonic()
     finished = project.run("data")
-    project.seconds = time.monotonic() - start
     assert finished.returncode == 0, finished.stdout
     return project

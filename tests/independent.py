@@ -23,6 +23,8 @@ from independent_equations import (
     bodies,
     bracket,
     contact_force,
+    deviates,
+    distance,
     elastic,
     holding_force,
     pairs,
@@ -51,7 +53,8 @@ class Course:
     """A run: strobes (n_periods + 1, 2) of y and y', extrema (n, 3) of time, y, kind; end state.
 
     `regimes` and `slips` list (time, new value) of each change; times count from the start.
-    `partings` counts how often the flanks part while they overlap, or touch again.
+    `partings` counts how often the flanks part while they overlap, or touch again, and `pressings`
+    how often a pair of teeth touches or parts by itself.
     """
 
     strobes: np.ndarray
@@ -60,6 +63,7 @@ class Course:
     regimes: list
     slips: list
     partings: int = 0
+    pressings: int = 0
 
 
 def integrate(
@@ -81,7 +85,13 @@ def integrate(
             run.advance((n + high + problem.initial_phase) * problem.period)
         strobes.append(run.relative_motion())
     return Course(
-        np.array(strobes), np.array(run.extrema), run.state, run.regimes, run.slips, run.partings
+        np.array(strobes),
+        np.array(run.extrema),
+        run.state,
+        run.regimes,
+        run.slips,
+        run.partings,
+        run.pressings,
     )
 
 
@@ -92,6 +102,8 @@ def _stops(problem: Problem) -> list[float]:
     points = len(terms.tooth_pair_stiffness)
     places = [half, begins + pitch_point(problem), 1.0 - half]
     places += [place for place, _ in terms.stiffness_table]
+    length_3, length_2 = terms.tip_relief_length
+    places += [begins + length_2, begins + problem.contact_ratio - length_3]
     places += [begins + problem.contact_ratio * i / (points - 1) for i in range(points)]
     inner = sorted({(place - problem.initial_phase) % 1.0 for place in places} | {0.0, 1.0})
     # Places that differ by rounding are one.
@@ -115,12 +127,16 @@ class _Run:
             self.mode = Mode(NORMAL_MESH, self.time / problem.period)
         self.direction = 0
         self.extrema, self.regimes, self.slips = [], [], []
-        self.partings = 0
+        self.partings = self.pressings = 0
 
     def relative_motion(self):
         return relative_motion(self.problem, self.time, self.state)
 
     def advance(self, end):
+        if deviates(self.problem):
+            y, _ = self.relative_motion()
+            touching = [p for _, _, p in pairs(self.problem, self.mode.inside)]
+            self._press(p for p in touching if y >= distance(self.problem, self.time, p))
         if self.has_signs:
             self._settle_slip()
         if self.problem.terms.non_adhesive and self.mode.regime != CONTACT_LOSS:
@@ -168,18 +184,26 @@ class _Run:
 
         if self.direction:
             watch(lambda t, x: motion(t, x)[1], -self.direction, self._turn)
-        if mode.regime == NORMAL_MESH:
+        if deviates(problem) and mode.regime != INVERSE_MESH:
+            for _, _, p in pairs(problem, mode.inside):
+                watch(
+                    lambda t, x, p=p: motion(t, x)[0] - distance(problem, t, p),
+                    -1 if p in mode.pressing else 1,
+                    lambda p=p: self._press({*mode.pressing} ^ {p}),
+                )
+        elif mode.regime == NORMAL_MESH:
             watch(lambda t, x: motion(t, x)[0], -1, lambda: self._enter(CONTACT_LOSS))
         elif mode.regime == INVERSE_MESH:
             watch(
-                lambda t, x: motion(t, x)[0] + backlash(problem, t),
+                lambda t, x: motion(t, x)[0] + backlash(problem, t, x),
                 1,
                 lambda: self._enter(CONTACT_LOSS),
             )
         else:
             watch(lambda t, x: motion(t, x)[0], 1, lambda: self._enter(NORMAL_MESH))
+        if mode.regime == CONTACT_LOSS:
             watch(
-                lambda t, x: motion(t, x)[0] + backlash(problem, t),
+                lambda t, x: motion(t, x)[0] + backlash(problem, t, x),
                 -1,
                 lambda: self._enter(INVERSE_MESH),
             )
@@ -220,6 +244,14 @@ class _Run:
         self.mode = replace(self.mode, regime=regime, parted=False)
         self.regimes.append((self.time - self.problem.start_time, regime))
 
+    def _press(self, pressing):
+        self.mode = replace(self.mode, pressing=tuple(sorted(pressing)))
+        self.pressings += 1
+        if self.mode.pressing and self.mode.regime != NORMAL_MESH:
+            self._enter(NORMAL_MESH)
+        elif not self.mode.pressing and self.mode.regime == NORMAL_MESH:
+            self._enter(CONTACT_LOSS)
+
     def _part(self):
         self.mode = replace(self.mode, parted=not self.mode.parted)
         self.partings += 1
@@ -229,7 +261,7 @@ class _Run:
         problem = self.problem
         y, _ = relative_motion(problem, time, state)
         gamma = sum(gamma for gamma, _, _ in pairs(problem, self.mode.inside))
-        force = elastic(problem, time, y, self.mode)
+        force = elastic(problem, time, y, self.mode, state)
         return problem.friction_coefficient * force * gamma * self.mode.run_out_sign
 
     def _margin(self, time, state):

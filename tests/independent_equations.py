@@ -24,6 +24,7 @@ class Mode:
     run_out_sign: int = 1
     slip_sign: int = 1
     parted: bool = False
+    pressing: tuple[int, ...] = ()
 
 
 class Body:
@@ -66,8 +67,19 @@ def series_of(harmonics, angle: float) -> float:
     return sum(a * cos(n * angle) + b * sin(n * angle) for n, a, b in harmonics)
 
 
-def backlash(problem: Problem, t: float) -> float:
-    return problem.backlash + series_of(problem.terms.backlash_harmonics, problem.nu * t)
+def backlash(problem: Problem, t: float, x) -> float:
+    """Return s(t), with 2 sin(alpha) of what the distance of the centres grows by, where asked."""
+    s = problem.backlash + series_of(problem.terms.backlash_harmonics, problem.nu * t)
+    if not problem.terms.backlash_follows_centres:
+        return s
+    third, second = bodies(problem)
+    turned_3 = third.omega * t + x[PHI_3] / third.radius
+    turned_2 = problem.eccentricity_angle - second.omega * t - x[PHI_2] / second.radius
+    e_3, e_2 = problem.eccentricity_3, problem.eccentricity_2
+    along = x[Y_2] + e_2 * sin(turned_2) - x[Y_3] - e_3 * sin(turned_3)
+    across = x[Z_2] + e_2 * cos(turned_2) - x[Z_3] - e_3 * cos(turned_3)
+    alpha = problem.pressure_angle
+    return s + 2.0 * sin(alpha) * (sin(alpha) * along + cos(alpha) * across)
 
 
 def relative_motion(problem: Problem, t: float, x) -> tuple[float, float]:
@@ -138,23 +150,46 @@ def tooth_factor(problem: Problem, p: int) -> float:
     return product
 
 
+def deviates(problem: Problem) -> bool:
+    """Return whether flanks have pitch errors or tip relief."""
+    terms = problem.terms
+    return bool(terms.pitch_errors_3 or terms.pitch_errors_2 or any(terms.tip_relief))
+
+
+def distance(problem: Problem, t: float, p: int) -> float:
+    """Return the y at which pair p touches: its relief less the pitch errors of its teeth."""
+    terms, length = problem.terms, problem.contact_ratio
+    apart = 0.0
+    for errors in (terms.pitch_errors_3, terms.pitch_errors_2):
+        apart -= errors[p % len(errors)] if errors else 0.0
+    from_entry = t / problem.period - (p + 0.5 - 0.5 * length)
+    for i, from_tip in enumerate((length - from_entry, from_entry)):
+        if terms.tip_relief[i]:
+            apart += terms.tip_relief[i] * max(0.0, 1.0 - from_tip / terms.tip_relief_length[i])
+    return apart
+
+
 def stiffness(problem: Problem, t: float, inside: float) -> float:
-    """Return C / C_s: of the mesh, by eq. (4) if it is cut, else by its sum; or of its pairs."""
+    return sum(stiffness_of_pairs(problem, t, inside).values())
+
+
+def stiffness_of_pairs(problem: Problem, t: float, inside: float) -> dict[int, float]:
+    """Return C / C_s of each pair: its own, or an equal share of eq. (4), cut or as its sum."""
     terms, length = problem.terms, problem.contact_ratio
     touching = pairs(problem, inside)
     phase = t / problem.period
     phase -= round(phase - inside)
     if terms.tooth_pair_stiffness:
         values = terms.tooth_pair_stiffness
-        total = 0.0
+        found = {}
         for _, _, p in touching:
             # The piece of the table is that of `inside`; the place on it is that of t.
             start = p + 0.5 - 0.5 * length
             piece = min(int((inside - start) / length * (len(values) - 1)), len(values) - 2)
             share = (phase - start) / length * (len(values) - 1) - piece
             at = values[piece] + share * (values[piece + 1] - values[piece])
-            total += at * tooth_factor(problem, p)
-        return total
+            found[p] = at * tooth_factor(problem, p)
+        return found
     if terms.stiffness_table:
         for (low, before), (high, after) in itertools.pairwise(terms.stiffness_table):
             if low <= inside % 1.0 <= high and low < high:
@@ -170,16 +205,27 @@ def stiffness(problem: Problem, t: float, inside: float) -> float:
             c += 2.0 * (high - low) * sin(n * pi * share) / (n * pi) * cos(n * problem.nu * t)
         for n, (a, b) in enumerate(terms.stiffness_fourier, start=1):
             c += a * cos(n * problem.nu * t) + b * sin(n * problem.nu * t)
-    return c * sum(tooth_factor(problem, p) for _, _, p in touching) / len(touching)
+    return {p: c * tooth_factor(problem, p) / len(touching) for _, _, p in touching}
 
 
-def elastic(problem: Problem, t: float, y: float, mode: Mode) -> float:
-    """Return C (d + c_2 d |d| + c_3 d^3) of the depth d."""
+def elastic(problem: Problem, t: float, y: float, mode: Mode, x) -> float:
+    """Return the restoring force of the depth; added over the pairs where flanks deviate."""
     if mode.regime == CONTACT_LOSS:
         return 0.0
-    d = y if mode.regime == NORMAL_MESH else y + backlash(problem, t)
-    softening = problem.terms.restoring_2 * abs(d) * d + problem.terms.restoring_3 * d**3
-    return stiffness(problem, t, mode.inside) * (d + softening)
+    if deviates(problem) and mode.regime == NORMAL_MESH:
+        shares = stiffness_of_pairs(problem, t, mode.inside)
+        return sum(
+            shares[p] * _restoring(problem, y - distance(problem, t, p)) for p in mode.pressing
+        )
+    d = y if mode.regime == NORMAL_MESH else y + backlash(problem, t, x)
+    return stiffness(problem, t, mode.inside) * _restoring(problem, d)
+
+
+def _restoring(problem: Problem, d: float) -> float:
+    """Return |d|^p + c_2 d^2 + c_3 |d|^3 with the sign of d."""
+    terms, size = problem.terms, abs(d)
+    force = size**terms.restoring_power + terms.restoring_2 * size**2 + terms.restoring_3 * size**3
+    return copysign(force, d)
 
 
 def contact_force(problem: Problem, t: float, x, mode: Mode) -> float:
@@ -189,7 +235,7 @@ def contact_force(problem: Problem, t: float, x, mode: Mode) -> float:
     damping = k_1 * v + k_2 * abs(v) * v + k_3 * v**3
     if mode.regime != CONTACT_LOSS and problem.terms.damping_power:
         damping *= stiffness(problem, t, mode.inside) ** problem.terms.damping_power
-    return elastic(problem, t, y, mode) + damping
+    return elastic(problem, t, y, mode, x) + damping
 
 
 def bearing(problem: Problem, i: int, x) -> float:
@@ -208,7 +254,7 @@ def holding_force(problem: Problem, x) -> float:
 def rates(problem: Problem, t: float, x, mode: Mode) -> list[float]:
     """Return the derivative of the state, eq. (1)."""
     y, _ = relative_motion(problem, t, x)
-    force = 0.0 if mode.parted else elastic(problem, t, y, mode)
+    force = 0.0 if mode.parted else elastic(problem, t, y, mode, x)
     normal = 0.0 if mode.parted else contact_force(problem, t, x, mode)
     signs = mode.run_out_sign * mode.slip_sign
     third, second = bodies(problem)

@@ -1,22 +1,26 @@
 """A copy of the project in which the real pipeline runs, for tests that edit, break and kill."""
 
+import functools
 import hashlib
 import os
 import shutil
-import signal
 import subprocess
 import sys
-import time
+from collections.abc import Sequence
 from pathlib import Path
+from subprocess import CompletedProcess
+
+from snakemake_process import PATIENCE, Run
+
+import gearmesh as gm
+from gearmesh.model.variants import variant
+from gearmesh.solvers.simulation import simulate
 
 ROOT = Path(__file__).parents[1]
 COPIED = (
     *("Snakefile", "config", "notebooks", "profiles", "src", "workflow"),
     *("README.md", "CITATION.cff", "requirements.lock"),
 )
-PATIENCE = 280
-"""Seconds after which a run hangs."""
-
 TINY = """\
 base: smoke.yaml
 title: A few cases
@@ -26,6 +30,15 @@ strong_damping: {variant: c-material, factor: 5, nu: {start: 0.6, stop: 0.8, ste
 time_courses: null
 """
 """A study of 14 cases, for tests that do without figures."""
+
+
+@functools.cache
+def compile_solvers() -> None:
+    """Compile what the studies here run, so that no copy of the project has to."""
+    pair = gm.paper()
+    simulate([pair.problem(variant("c-both"), 0.7)], estimate_errors=False)
+    gm.simulate(pair, "c-both", 0.7)
+    gm.find_orbit(pair, "c-lubricant", 0.9)
 
 
 class Project:
@@ -43,10 +56,13 @@ class Project:
         self.folder = folder
         self.config = config
         self.environment = os.environ | {"PYTHONPATH": str(folder / "src")}
+        # Every job would compile all modules again.
+        self.environment.pop("PYTHONDONTWRITEBYTECODE", None)
 
     @classmethod
     def create(cls, folder: Path, config: str) -> "Project":
         """Copy the working tree, compiled code included."""
+        compile_solvers()
         folder.mkdir(parents=True)
         for name in COPIED:
             source = ROOT / name
@@ -82,22 +98,22 @@ class Project:
         """The folder with the results of the study."""
         return self.folder / "results" / Path(self.config).stem
 
-    def command(self, *arguments: str, options: tuple[str, ...] = ()) -> list[str]:
-        """Return the command line of a run, as a user types it."""
-        return [
-            *(sys.executable, "-m", "snakemake", *options),
-            *("--config", f"study={self.config}", "--"),
-            *arguments,
-        ]
+    def start(self, *arguments: str, options: Sequence[str] = ()) -> Run:
+        """Start a run of targets."""
+        return Run(self.folder, self.environment, self.command(*arguments, options=options))
 
-    def run(self, *arguments: str, **settings: object) -> subprocess.CompletedProcess:
-        """Run targets to the end; settings are those of `command`."""
-        return self.execute(*self.command(*arguments, **settings))
+    def run(self, *arguments: str, options: Sequence[str] = ()) -> CompletedProcess[str]:
+        """Run targets to the end."""
+        return self.start(*arguments, options=options).wait()
 
-    def execute(self, *command: str) -> subprocess.CompletedProcess:
-        """Execute a command in the folder of the project."""
+    def command(self, *arguments: str, options: Sequence[str] = ()) -> list[str]:
+        """Return what a user types after `snakemake` for a run of targets."""
+        return [*options, "--config", f"study={self.config}", "--", *arguments]
+
+    def execute(self, *arguments: str) -> CompletedProcess[str]:
+        """Execute `snakemake` in a fresh interpreter, for tests of what surrounds it."""
         return subprocess.run(
-            command,
+            [sys.executable, "-m", "snakemake", *arguments],
             cwd=self.folder,
             env=self.environment,
             stdout=subprocess.PIPE,
@@ -105,20 +121,6 @@ class Project:
             text=True,
             timeout=PATIENCE,
             check=False,
-        )
-
-    def start(self, *arguments: str) -> subprocess.Popen:
-        """Start a run as the leader of a process group of its own."""
-        return subprocess.Popen(
-            self.command(*arguments),
-            cwd=self.folder,
-            env=self.environment,
-            stdout=subprocess.PIPE,
-            stderr=subprocess.STDOUT,
-            text=True,
-            start_new_session=True,
-            # What runs the tests in the background ignores SIGINT, and its children would too.
-            preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL),
         )
 
     def plan(self, *arguments: str) -> set[str]:
@@ -150,18 +152,3 @@ class Project:
             and path.parent.name not in ("logs", "benchmarks")
             and path.name not in (".run.lock", ".jobs.lock", ".again")
         }
-
-
-def end(process: subprocess.Popen, how: signal.Signals) -> None:
-    """Send a signal to a run and all that it started, and wait for its end."""
-    os.killpg(process.pid, how)
-    process.communicate(timeout=PATIENCE)
-
-
-def wait_for(condition, process: subprocess.Popen) -> object:
-    """Wait until something is there, or the run is over."""
-    while process.poll() is None:
-        if found := condition():
-            return found
-        time.sleep(0.005)
-    return condition()

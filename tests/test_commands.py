@@ -11,12 +11,25 @@ import pytest
 import xarray as xr
 
 from gearmesh import __version__
+from gearmesh.commands.main import main
 from gearmesh.model.variants import VARIANTS
 
 
 @pytest.fixture
-def gearmesh(root):
-    """Return a function that runs the command in the root of the project."""
+def gearmesh(root, monkeypatch, capsys):
+    """Return a function that runs the command in this process, in the root of the project."""
+
+    def run(*arguments, cwd=root):
+        monkeypatch.chdir(cwd)
+        status = main([*map(str, arguments)])
+        return subprocess.CompletedProcess(arguments, status, *capsys.readouterr())
+
+    return run
+
+
+@pytest.fixture
+def process(root):
+    """Return a function that runs the command as a process, in the root of the project."""
 
     def run(*arguments, cwd=root, **environment):
         return subprocess.run(
@@ -41,10 +54,10 @@ def refused(run):
     return line
 
 
-def test_help_and_version(gearmesh):
-    assert "simulate" in gearmesh("--help").stdout
-    assert "--set" in gearmesh("simulate", "--help").stdout
-    assert gearmesh("--version").stdout == f"gearmesh {__version__}\n"
+def test_help_and_version(process):
+    assert "simulate" in process("--help").stdout
+    assert "--set" in process("simulate", "--help").stdout
+    assert process("--version").stdout == f"gearmesh {__version__}\n"
 
 
 def test_help_imports_nothing_heavy(root):
@@ -79,10 +92,14 @@ def test_parameters_lists_values_units_and_kinds(gearmesh):
     assert lines["damping_ratio"][3:5] == ["1", "computed"]
 
 
-def test_output_survives_a_terminal_without_greek(gearmesh):
-    run = gearmesh("parameters", PYTHONIOENCODING="ascii")
+def test_output_survives_a_terminal_without_greek(process):
+    run = process("parameters", PYTHONIOENCODING="ascii")
     assert run.returncode == 0
     assert "teeth" in run.stdout
+
+
+def test_a_mistake_ends_the_process_with_status_2(process):
+    assert "did you mean 'backlash'?" in refused(process("parameters", "--set", "backlsh=40 um"))
 
 
 def test_the_paper_s_pair_is_there_in_any_folder(gearmesh, tmp_path):
@@ -227,11 +244,11 @@ def test_an_orbit_that_is_not_there_says_why(gearmesh):
 
 
 @pytest.fixture(scope="module")
-def two_runs(root, tmp_path_factory):
+def two_runs(tmp_path_factory):
     folder = tmp_path_factory.mktemp("runs")
     for name, nu in (("a.nc", "0.78"), ("b.nc", "0.80")):
-        command = ["simulate", "--variant", "c-lubricant", "--nu", nu, "-o", folder / name]
-        subprocess.run([sys.executable, "-m", "gearmesh", *command], check=True, timeout=120)
+        case = ["--variant", "c-lubricant", "--nu", nu, "-o", str(folder / name)]
+        assert main(["simulate", *case]) == 0
     return folder
 
 

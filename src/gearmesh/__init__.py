@@ -20,6 +20,7 @@ if TYPE_CHECKING:
         follow,
         follow_special,
     )
+    from gearmesh.interface.charts import read_pitch_chart
     from gearmesh.interface.geometry import Geometry, geometry
     from gearmesh.interface.lyapunov import lyapunov_spectrum
     from gearmesh.interface.orbits import Orbit, find_orbit
@@ -50,6 +51,7 @@ __all__ = [
     "load",
     "lyapunov_spectrum",
     "paper",
+    "read_pitch_chart",
     "simulate",
     "spectrum",
     "sweep",
@@ -62,6 +64,7 @@ _MODULES = {
         *("Branch", "SpecialCurve", "SpecialPoint"),
         *("follow", "follow_special"),
     ),
+    "gearmesh.interface.charts": ("read_pitch_chart",),
     "gearmesh.interface.geometry": ("Geometry", "geometry"),
     "gearmesh.interface.lyapunov": ("lyapunov_spectrum",),
     "gearmesh.interface.orbits": ("Orbit", "find_orbit"),

@@ -18,6 +18,11 @@ SCREENS = {
 ONLY_VIOLATIONS = {"resultTypes": ["violations"]}
 """What passes is not listed: the lists take longest on long pages."""
 
+UNNAMED = """[...document.querySelectorAll(".stack tr")].filter((row) =>
+    [...row.querySelectorAll("td:not([data-label])")].filter((cell) =>
+        /^[−-]?\\d/.test(cell.innerText)).length > 1).length"""
+"""Rows with several numbers that no label tells apart once their cells are stacked."""
+
 BROKEN = "[...document.images].filter((image) => !image.complete || !image.naturalWidth).length"
 
 
@@ -27,6 +32,7 @@ def test_everybody_can_read_the_pages_on_every_screen(open_tab, report, name, sc
     page = open_tab(**SCREENS[screen]).open(report / name)
     assert page.evaluate(BROKEN) == 0
     assert page.evaluate("document.documentElement.scrollWidth <= innerWidth")
+    assert page.evaluate(UNNAMED) == 0
     ground = page.evaluate("getComputedStyle(document.body).backgroundColor")
     light = sum(map(int, re.findall(r"\d+", ground)[:3])) > 3 * 128
     assert light == (SCREENS[screen]["color_scheme"] == "light")

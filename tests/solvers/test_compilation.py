@@ -4,6 +4,7 @@ import errno
 import math
 import multiprocessing
 import os
+import runpy
 import shutil
 import subprocess
 import sys
@@ -17,7 +18,7 @@ from gearmesh.data import provenance
 from gearmesh.solvers import compilation, sources
 from gearmesh.solvers.compilation import persistent
 
-PROCESSES = 4
+PROCESSES = 3
 PACKAGE = Path(gearmesh.__file__).parent
 
 
@@ -65,14 +66,37 @@ def misses(folder, key, processes):
 
 
 @pytest.mark.skipif(compilation.fcntl is None, reason="this system has no file locks")
-def test_processes_that_start_together_compile_once(tmp_path):
+def test_processes_that_start_together_compile_once_and_the_code_is_kept(tmp_path, monkeypatch):
     assert misses(tmp_path, "one", PROCESSES) == 1
+    monkeypatch.setattr("numba.config.CACHE_DIR", str(tmp_path))
+    for key, expected in (("one", 0), ("two", 1), ("two", 0)):
+        monkeypatch.setattr(sources, "digest", lambda key=key: key)
+        kept = []
+        assert persistent(build_square(kept))(3.0) == pytest.approx(9.0)
+        assert sum(kept[0].stats.cache_misses.values()) == expected
 
 
-def test_kept_code_serves_until_the_key_changes(tmp_path):
-    assert misses(tmp_path, "one", 1) == 1
-    assert misses(tmp_path, "one", 1) == 0
-    assert misses(tmp_path, "two", 1) == 1
+BUILD = """
+from numba import njit
+def build(key, cache):
+    @njit(cache=cache)
+    def compiled(x):
+        key
+        return x * x
+    return compiled
+"""
+
+
+def test_code_compiles_where_no_folder_can_hold_it(tmp_path, monkeypatch):
+    """Neither the folder of the source nor the one of the user."""
+    for name in ("__pycache__", "numba"):
+        (tmp_path / name).write_text("no folder")
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
+    (tmp_path / "square.py").write_text(BUILD)
+    build = runpy.run_path(str(tmp_path / "square.py"))["build"]
+    with pytest.raises(RuntimeError, match="no locator"):
+        build("one", True)
+    assert persistent(build)(3.0) == pytest.approx(9.0)
 
 
 @pytest.fixture

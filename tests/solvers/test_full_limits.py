@@ -197,3 +197,87 @@ def test_a_constant_harmonic_of_the_backlash_is_a_wider_backlash():
     wider = with_terms(replace(case, backlash=0.3), backlash_harmonics=(Harmonic(0.0, 0.1, 0.0),))
     assert integrate(case, 1e-12).inverse_mesh_fraction > 0.0
     np.testing.assert_allclose(strobes(wider), strobes(case), atol=1e-10, rtol=0)
+
+
+def test_hertz_power_has_the_frequency_of_its_stiffness_at_rest():
+    """At the depth 1 the force C d^p has the slope p C: small motion has the frequency sqrt(p)."""
+    start = State(1.0 + 1e-5, 0.0, -2.0, 0.0)
+    free = oscillator(revolutions=4, kept_revolutions=4, initial_state=start, material=(0.0,) * 3)
+    response = integrate(with_terms(free, restoring_power=1.5), 1e-12, estimate_errors=False)
+    peaks = response.extremum_time[response.extremum_kind == 1]
+    period = np.diff(peaks).mean()
+    assert period == pytest.approx(2.0 * math.pi / math.sqrt(1.5), rel=1e-9)
+
+
+def test_hertz_power_of_one_is_the_linear_force_and_the_onset_does_not_matter():
+    """Between two heights of free fall the flanks rebound: energy C d^(p + 1)/(p + 1) is kept."""
+    case = oscillator(
+        revolutions=1,
+        backlash=20.0,
+        material=(0.0,) * 3,
+        initial_state=State(-2.0, 0.0, -2.0, 0.0),
+    )
+    assert with_terms(case, restoring_power=1.0) == replace(case, terms=GeneralTerms())
+    response = integrate(with_terms(case, restoring_power=1.5), 1e-12, estimate_errors=False)
+    deepest = brentq(lambda d: d**2.5 / 2.5 - d - 2.0, 0.0, 10.0, xtol=1e-14)
+    assert response.y_max == pytest.approx(deepest, abs=1e-9)
+    assert response.y_min == pytest.approx(-2.0, abs=1e-9)
+
+
+def test_backlash_follows_the_centres_by_their_static_displacement():
+    """Bearings of 1/0.7 and 1/0.5 give way by 1.2 in all; nothing moves across without friction."""
+    plain = problem(0.9, "b-both", backlash=0.5, friction_coefficient=0.0, revolutions=2)
+    heavy = replace(
+        plain,
+        wheels=(
+            replace(PINION, teeth=21, body_mass=IMMOVABLE, bearing_stiffness=(1 / 0.7, 1.0)),
+            replace(WHEEL, teeth=21, body_mass=IMMOVABLE, bearing_stiffness=(1 / 0.5, 1.0)),
+        ),
+    )
+    wider = 0.5 + 2.0 * math.sin(plain.pressure_angle) ** 2 * 1.2
+    follows, fixed = (
+        with_terms(heavy, backlash_follows_centres=True),
+        replace(heavy, backlash=wider),
+    )
+    assert integrate(fixed, 1e-12).inverse_mesh_fraction > 0.0
+    np.testing.assert_allclose(strobes(follows), strobes(fixed), atol=1e-9, rtol=0)
+    assert np.abs(strobes(follows) - strobes(heavy)).max() > 1e-2
+
+
+def test_flanks_that_deviate_by_nothing_are_those_of_the_pair():
+    """Errors of 0 and relief of next to nothing still make each pair of teeth touch singly."""
+    case = replace(BASE, backlash=0.5)
+    even = with_terms(case, pitch_errors_3=(0.0,) * 21)
+    np.testing.assert_allclose(strobes(even), strobes(case), atol=1e-10, rtol=0)
+    spared = with_terms(case, tip_relief=(1e-14, 1e-14), tip_relief_length=(0.5, 0.4))
+    np.testing.assert_allclose(strobes(spared), strobes(case), atol=1e-10, rtol=0)
+
+
+def test_a_tooth_that_stands_back_is_touched_once_a_revolution():
+    """In slow rotation the mesh follows its teeth: wheel 3 turns further by the missing flank."""
+    errors = tuple(-0.4 if tooth == 4 else 0.0 for tooth in range(21))
+    case = problem(0.02, "b-both", contact_ratio=1.2, friction_coefficient=0.0, revolutions=1)
+    slow = replace(case, material=(0.5, 0.0, 0.0), stiffness_max=1.0, stiffness_min=1.0)
+    y = [integrate(one, 1e-9, 64, estimate_errors=False).samples.y.reshape(21, 64)
+         for one in (slow, with_terms(slow, pitch_errors_3=errors))]  # fmt: skip
+    single = y[1][:, 28:36] - y[0][:, 28:36]  # around single contact of tooth p
+    assert np.delete(single, 4, axis=0) == pytest.approx(0.0, abs=0.02)
+    assert single[4] == pytest.approx(0.4, abs=0.02)
+
+
+def test_tip_relief_of_the_static_deflection_takes_the_shock_out_of_the_mesh():
+    """With C_a = y at the tip, a pair takes over its load without a jump (Lin and others 1994)."""
+    spring = with_terms(
+        problem(0.25, "b-both", friction_coefficient=0.0, material=(0.2, 0.0, 0.0)),
+        tooth_pair_stiffness=(0.62, 0.62),
+    )
+    length = spring.contact_ratio - 1.0
+    relieved = replace(
+        spring,
+        terms=replace(spring.terms, tip_relief=(1.6, 1.6), tip_relief_length=(length, length)),
+    )
+    plain, spared = (
+        np.ptp(integrate(one, 1e-9, 256, estimate_errors=False).samples.force_normal)
+        for one in (spring, relieved)
+    )
+    assert spared < 0.5 * plain

@@ -1,9 +1,11 @@
-"""The general solver against SciPy's DOP853 on the same six equations, over all 105 periods.
+"""The general solver against SciPy's DOP853 on the same six equations, over two revolutions.
 
 What the reduced system leaves out is here: run-out with both signs of eq. (6) and sticking,
 profile deviation and the truncated series of C(t), in normal mesh, contact loss and back-flank
 contact.
 """
+
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -40,7 +42,8 @@ def courses():
 
     def course(name):
         if name not in made:
-            made[name] = integrate_independently(CASES[name], rtol=1e-12)
+            case = replace(CASES[name], revolutions=2)
+            made[name] = integrate_independently(case, rtol=1e-12, steps_per_period=24)
         return made[name]
 
     return course
@@ -48,11 +51,11 @@ def courses():
 
 @pytest.mark.parametrize("name", CASES)
 def test_agrees_with_dop853(name, courses):
-    case: Problem = CASES[name]
+    case: Problem = replace(CASES[name], revolutions=2)
     course, response = courses(name), integrate(case, 1e-12)
     found = np.stack([response.strobe_y, response.strobe_v], axis=1)
     np.testing.assert_allclose(found, course.strobes, atol=1e-8, rtol=0)
-    kept = course.extrema[course.extrema[:, 0] > 84 * case.period]
+    kept = course.extrema[course.extrema[:, 0] > 21 * case.period]
     np.testing.assert_allclose(response.extremum_time, kept[:, 0], atol=1e-6)
     np.testing.assert_allclose(response.extremum_y, kept[:, 1], atol=1e-8)
     np.testing.assert_array_equal(response.extremum_kind, kept[:, 2])
@@ -61,6 +64,6 @@ def test_agrees_with_dop853(name, courses):
 def test_the_cases_reach_what_they_are_for(courses):
     slips = [value for _, value in courses("run-out, light bodies").slips]
     assert {-1, 0, 1} == set(slips)
-    assert len(courses("run-out, contact loss").regimes) > 100
+    assert len(courses("run-out, contact loss").regimes) > 40
     regimes = [value for _, value in courses("run-out, back flanks").regimes]
     assert INVERSE_MESH in regimes

@@ -14,8 +14,9 @@ from gearmesh.model.motion import Mode, accelerations, relative_motion
 from gearmesh.solvers.full import runs as general
 from gearmesh.solvers.full import series as full_series
 from gearmesh.solvers.full.coordinates import kinds_of_period
+from gearmesh.solvers.full.recurrences import recurrences
 from gearmesh.solvers.full.roots import MAX_DEGREE
-from gearmesh.solvers.full.tape import Y, tape
+from gearmesh.solvers.full.tape import Y
 from gearmesh.solvers.reduced import taylor
 from gearmesh.solvers.reduced import workspace as rows
 from gearmesh.solvers.simulation import simulate
@@ -118,7 +119,7 @@ RUN_OUT = problem(
 def test_the_full_recurrence_is_the_statement(regime, part, slip_sign):
     cases = general._case(RUN_OUT, 1e-10, ORDER, 6)
     phases, _ = kinds_of_period(RUN_OUT)
-    recorded = tape(RUN_OUT, phases)
+    code = recurrences(RUN_OUT, phases, sampled=False)
     segments = general._segments(RUN_OUT)
     start = 0.0 if part == 0 else segments["end"][part - 1]
     modes = np.zeros(1, full_series.MODE)
@@ -131,8 +132,8 @@ def test_the_full_recurrence_is_the_statement(regime, part, slip_sign):
         state[6 + 4] = state[6 + 5]
     _, rate = relative_motion(RUN_OUT, time, state[:6], state[6:])
     modes["direction"] = np.sign(rate)
-    series = np.zeros((recorded.height, MAX_DEGREE + 1))
-    compiled_series(cases, modes, state, tuple(recorded), series)
+    series = np.zeros((code.height, MAX_DEGREE + 1))
+    compiled_series(cases, modes, state, (code.numbers, code.branches), series)
     mode = Mode(regime, time / RUN_OUT.period, -1, slip_sign)
     expected = stated_series(RUN_OUT, time, state, mode)
     found = series[[*range(6), Y], : ORDER + 1]

@@ -112,7 +112,7 @@ def test_a_user_whom_the_system_does_not_know_can_plan_a_run(tmp_path):
     for name in ("USER", "LOGNAME"):
         copy.environment.pop(name, None)
     copy.environment["HOME"] = "/nowhere"  # as `docker run --user 12345` has it
-    finished = copy.run("data", options=("--dry-run",))
+    finished = copy.execute("--dry-run", *copy.command("data"))
     assert finished.returncode == 0, finished.stdout
     assert "Traceback" not in finished.stdout
 

@@ -10,23 +10,42 @@ import random
 import shutil
 import signal
 import subprocess
-import sys
 import time
 from pathlib import Path
 
 import numpy as np
 import pytest
-from project import Project, end, wait_for
+from project import Project
+from snakemake_process import Run
 
 from gearmesh.data.datasets import open_dataset
 
 KILLS = 10
 
+BRIEF = """\
+base: paper.yaml
+nu: {start: 0.6, stop: 0.8, step: 0.2}
+variants: [c-material]
+strong_damping: null
+time_courses: null
+"""
+"""Two cases."""
+
+
+@pytest.fixture(scope="module")
+def brief(tmp_path_factory: pytest.TempPathFactory) -> Project:
+    """Two cases and their datasets."""
+    project = Project.create(tmp_path_factory.mktemp("brief") / "project", "config/brief.yaml")
+    project.path(project.config).write_text(BRIEF)
+    finished = project.run("data")
+    assert finished.returncode == 0, finished.stdout
+    return project
+
 
 @pytest.fixture
-def fresh(tiny: Project, tmp_path: Path) -> Project:
+def fresh(brief: Project, tmp_path: Path) -> Project:
     """The same without results; what is compiled is there."""
-    project = tiny.copy(tmp_path / "project")
+    project = brief.copy(tmp_path / "project")
     shutil.rmtree(project.path("results"))
     shutil.rmtree(project.path(".snakemake"))
     return project
@@ -67,53 +86,53 @@ def workers(project: Project) -> list[int]:
     return found
 
 
-@pytest.mark.parametrize("seed", range(KILLS))
-def test_a_killed_run_heals(tiny, fresh, seed):
-    """kill -9 at a random moment: of everything, or of Snakemake alone, whose jobs live on."""
-    chance = random.Random(seed)
-    process = fresh.start("data")
-    time.sleep(chance.uniform(0.1, 1.0) * tiny.seconds)
-    if seed % 2:
-        end(process, signal.SIGKILL)
-    else:
-        process.kill()
-        process.stdout.close()
-        process.wait()
-    assert heals(fresh, tiny)
+def written(project: Project) -> int:
+    """Return how many files and folders of results there are, temporary ones included."""
+    return len([*project.path("results").rglob("*")])
 
 
-def test_a_killed_worker_heals(tiny, fresh):
-    process = fresh.start("data")
-    if found := wait_for(lambda: workers(fresh), process):
+@pytest.mark.parametrize("tenth", range(KILLS))
+def test_a_killed_run_heals(brief, fresh, tenth):
+    """kill -9 as files appear, in ten steps: of all processes, or of Snakemake alone."""
+    run = fresh.start("data")
+    run.wait_for(lambda: written(fresh) >= written(brief) * tenth / KILLS)
+    time.sleep(random.Random(tenth).uniform(0, 0.2))
+    run.send(signal.SIGKILL, to_all=bool(tenth % 2))
+    run.wait()
+    assert heals(fresh, brief)
+
+
+def test_a_killed_worker_heals(brief, fresh):
+    run = fresh.start("data")
+    if found := run.wait_for(lambda: workers(fresh)):
         os.kill(found[0], signal.SIGKILL)
-    process.communicate()
-    assert process.returncode != 0
-    assert heals(fresh, tiny)
+    assert run.wait().returncode != 0
+    assert heals(fresh, brief)
 
 
-def test_an_interrupted_run_heals(tiny, fresh):
-    process = fresh.start("data")
-    wait_for(lambda: workers(fresh), process)
-    end(process, signal.SIGINT)
-    assert process.returncode != 0
-    assert heals(fresh, tiny)
+def test_an_interrupted_run_heals(brief, fresh):
+    run = fresh.start("data")
+    run.wait_for(lambda: workers(fresh))
+    run.send(signal.SIGINT)
+    assert run.wait().returncode != 0
+    assert heals(fresh, brief)
 
 
-def test_a_full_disk_is_told_and_heals(tiny, fresh):
+def test_a_full_disk_is_told_and_heals(brief, fresh):
     results = fresh.path("results")
-    with mounted(results, "size=200k"):
+    with mounted(results, "size=60k"):
         finished = fresh.run("data")
         assert finished.returncode != 0
         assert "the disk is full; free some space and run again" in finished.stdout
         subprocess.run(["mount", "-o", "remount,size=50m", str(results)], check=True)
-        assert heals(fresh, tiny)
+        assert heals(fresh, brief)
 
 
 def test_results_that_cannot_be_written_are_told(fresh):
     with mounted(fresh.path("results"), "size=1m,ro"):
         finished = fresh.run("data")
         assert finished.returncode != 0
-        assert "gearmesh: error: results/tiny: cannot be written" in finished.stdout
+        assert "gearmesh: error: results/brief: cannot be written" in finished.stdout
 
 
 WRONG = {
@@ -134,10 +153,10 @@ def refusal(project: Project) -> str:
 
 @pytest.mark.parametrize("text", WRONG)
 def test_a_wrong_configuration_is_told_before_anything_is_written(fresh, text):
-    fresh.path("config/tiny.yaml").write_text(f"base: paper.yaml\n{text}\n")
+    fresh.path("config/brief.yaml").write_text(f"base: paper.yaml\n{text}\n")
     before = sorted(fresh.folder.iterdir())
     line = refusal(fresh)
-    assert line.startswith("gearmesh: error: config/tiny.yaml: ")
+    assert line.startswith("gearmesh: error: config/brief.yaml: ")
     assert WRONG[text] in line
     snakemake_s_own = fresh.path(".snakemake")
     assert sorted(set(fresh.folder.iterdir()) - {snakemake_s_own}) == before
@@ -158,24 +177,23 @@ def test_a_slip_elsewhere_is_told_like_one_in_the_study(fresh, name, text):
     assert not fresh.path("results").exists()
 
 
-def test_two_runs_at_once_do_not_disturb_each_other(tiny, fresh):
-    first = fresh.start("data")
-    wait_for(fresh.path("results/tiny/.run.lock").exists, first)
-    second = fresh.run("data")
-    told, _ = first.communicate()
-    assert first.returncode == 0, told
+def test_two_runs_at_once_do_not_disturb_each_other(brief, fresh):
+    running = fresh.start("data")
+    running.wait_for(fresh.path("results/brief/.run.lock").exists)
+    second, first = fresh.run("data"), running.wait()
+    assert first.returncode == 0, first.stdout
     if second.returncode:  # it came while the first was at work
         assert "another run is at work here; wait for its end, or stop it" in second.stdout
-    assert fresh.results() == tiny.results()
+    assert fresh.results() == brief.results()
 
 
-def test_a_run_that_is_turned_away_changes_nothing(tiny, tmp_path):
-    project = tiny.copy(tmp_path / "project")
+def test_a_run_that_is_turned_away_changes_nothing(brief, tmp_path):
+    project = brief.copy(tmp_path / "project")
     (project.study / "datasets" / "resonance.nc").write_bytes(b"not a dataset")
     before = project.results()
     with (project.study / ".run.lock").open("a") as lock:
         fcntl.flock(lock, fcntl.LOCK_EX)
-        project.edit("config/tiny.yaml", "factor: 5", "factor: 6")
+        project.edit("config/brief.yaml", "[c-material]", "[c-lubricant]")
         for path in (project.study / "batches").iterdir():
             path.unlink()
             del before[f"batches/{path.name}"]
@@ -193,49 +211,36 @@ fcntl.flock = refuse
 """
 
 
-def test_where_there_are_no_locks_one_line_warns(tiny, fresh, tmp_path):
+def test_where_there_are_no_locks_one_line_warns(brief, fresh, tmp_path):
     (tmp_path / "sitecustomize.py").write_text(SITE)
     fresh.environment["PYTHONPATH"] += f":{tmp_path}"
-    finished = fresh.run("data")
+    finished = fresh.execute(*fresh.command("data"))
     assert finished.returncode == 0, finished.stdout
     assert finished.stdout.count("has no locks") == 1
-    assert fresh.results() == tiny.results()
+    assert fresh.results() == brief.results()
 
 
-@pytest.mark.parametrize("name", ["HOME", "USER"])
-def test_it_runs_without_a_home(tiny, fresh, name):
-    fresh.environment.pop(name, None)
-    assert fresh.run("data").returncode == 0
-    assert fresh.results() == tiny.results()
+def test_it_runs_without_a_home(brief, fresh):
+    for name in ("HOME", "USER"):
+        fresh.environment.pop(name, None)
+    finished = fresh.execute(*fresh.command("data"))
+    assert finished.returncode == 0, finished.stdout
+    assert fresh.results() == brief.results()
 
 
 @pytest.mark.parametrize(
     "options",
     [
-        ("--config", "sudy=config/tiny.yaml"),
-        ("--configfile", "config/smoke.yaml", "--config", "study=config/tiny.yaml"),
+        ("--config", "sudy=config/brief.yaml"),
+        ("--configfile", "config/smoke.yaml", "--config", "study=config/brief.yaml"),
     ],
 )
 def test_unknown_or_several_studies_are_refused_in_one_line(fresh, options):
-    finished = fresh.execute(sys.executable, "-m", "snakemake", *options)
+    finished = Run(fresh.folder, fresh.environment, options).wait()
     assert finished.returncode == 2
     lines = [line for line in finished.stdout.splitlines() if "gearmesh: error" in line]
     assert len(lines) == 1, finished.stdout
     assert "Traceback" not in finished.stdout
-
-
-def test_an_unwritable_compilation_cache_changes_nothing(tiny, fresh, tmp_path):
-    """Neither the folder of the sources nor the one of the user can hold compiled code."""
-    for folder in fresh.path("src").rglob("__pycache__"):
-        shutil.rmtree(folder)
-        folder.write_text("no folder")
-    cache = tmp_path / "cache"
-    cache.mkdir()
-    (cache / "numba").write_text("no folder")
-    fresh.environment |= {"XDG_CACHE_HOME": str(cache)}
-    finished = fresh.run("data")
-    assert finished.returncode == 0, finished.stdout
-    assert fresh.results() == tiny.results()
 
 
 def test_a_case_that_fails_stops_nothing_else(fresh):
@@ -250,11 +255,13 @@ def test_a_case_that_fails_stops_nothing_else(fresh):
         "revolutions": "1",
     }
     lines = "".join(f"{name}: {value}\n" for name, value in stated.items())
-    fresh.edit("config/tiny.yaml", "title: A few cases\n", f"title: A few cases\n{lines}")
+    fresh.path("config/brief.yaml").write_text(
+        BRIEF.replace("[c-material]", "[a-conservative, c-material]").replace("0.8", "0.6") + lines
+    )
     finished = fresh.run("data")
     assert finished.returncode == 0, finished.stdout
     assert "not integrated" in finished.stdout
-    resonance = open_dataset(fresh.path("results/tiny/datasets/resonance.nc"))
+    resonance = open_dataset(fresh.path("results/brief/datasets/resonance.nc"))
     status = resonance["status"].sel(variant=["a-conservative", "c-material"]).values
     assert (status[0] == 0).all()
     assert (status[1] > 0).all()

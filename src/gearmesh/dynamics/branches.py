@@ -1,13 +1,13 @@
 """Branches of orbits: how a periodic motion changes with a parameter, and where it ends."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property, partial
 
 import numpy as np
 
-from gearmesh.dynamics.continuation import Curve, Family, Point, at_phase, clear_phase, frequency
-from gearmesh.dynamics.orbits import Orbit
+from gearmesh.dynamics.continuation import Curve, Family, Point, clear_phase, stretches
+from gearmesh.dynamics.shots import Shot
 from gearmesh.dynamics.special_points import SpecialPoint, special_points, suspects
 from gearmesh.dynamics.walks import LONGEST_STEP, Piece, joined, points_of, walk
 from gearmesh.errors import NoOrbit
@@ -47,9 +47,9 @@ class Branch:
         return np.array([point.values[0] for point in self.points])
 
     @cached_property
-    def orbits(self) -> list[Orbit]:
+    def orbits(self) -> Sequence[Shot]:
         """The orbits at these values."""
-        return [at_phase(point.orbit, self.phase) for point in self.points]
+        return [point.orbit.at_phase(self.phase) for point in self.points]
 
     @property
     def y_max(self) -> np.ndarray:
@@ -73,12 +73,12 @@ class Branch:
 
     @property
     def multipliers(self) -> np.ndarray:
-        """Floquet multipliers, shape (n, 4)."""
+        """Floquet multipliers, shape (n, number of multipliers)."""
         return np.array([point.orbit.multipliers for point in self.points])
 
 
 def follow(
-    orbit: Orbit,
+    orbit: Shot,
     parameter: str,
     limits: tuple[float, float],
     family: Family | None = None,
@@ -89,7 +89,7 @@ def follow(
 
     Parameters
     ----------
-    orbit : Orbit
+    orbit : Shot
         Where to begin.
     parameter : str
         A field of `Problem`, or a name of what `family` varies.
@@ -113,13 +113,14 @@ def follow(
     if not low <= value <= high:
         raise NoOrbit(f"{parameter} = {value:.6g} of the orbit is outside {low:.6g} to {high:.6g}")
     phase = orbit.problem.initial_phase
-    moved = at_phase(orbit, clear_phase(orbit))
+    moved = orbit.at_phase(clear_phase(orbit))
     curve = Curve(
         family,
         orbit.periods,
         (high - low,),
         moved.problem.initial_phase,
-        value=frequency(family, value),
+        moved,
+        stretches=stretches(family, value),
     )
     start = curve.at(moved, (value,))
     back, ahead = walk(curve, start, (limits,), longest_step)
@@ -127,7 +128,7 @@ def follow(
     special = [
         SpecialPoint(kind, found.problem.nu, {parameter: point.values[0]}, found)
         for kind, point in [*back.flip[: back is not ahead], *_special(pieces), *ahead.flip]
-        for found in (at_phase(point.orbit, phase),)
+        for found in (point.orbit.at_phase(phase),)
     ]
     return Branch(
         parameter,
@@ -153,7 +154,7 @@ def _special(pieces: list[Piece]) -> list[tuple[str, Point]]:
     ]
 
 
-def double_period(point: SpecialPoint, family: Family | None = None) -> Orbit:
+def double_period(point: SpecialPoint, family: Family | None = None) -> Shot:
     """Return an orbit of twice the period, close to a flip.
 
     Parameters
@@ -170,11 +171,11 @@ def double_period(point: SpecialPoint, family: Family | None = None) -> Orbit:
     """
     ((parameter, value),) = point.parameters.items()
     family = family or field_family(point.orbit.problem, parameter)
-    single = at_phase(point.orbit, clear_phase(point.orbit))
-    phase, nu = single.problem.initial_phase, frequency(family, value)
-    curve = Curve(family, 2 * single.periods, (1.0,), phase, value=nu)
-    across = np.linalg.svd(single.passage.jacobian + np.eye(4))[2][-1]
+    single = point.orbit.at_phase(clear_phase(point.orbit))
+    phase, stretched = single.problem.initial_phase, stretches(family, value)
+    curve = Curve(family, 2 * single.periods, (1.0,), phase, single, stretches=stretched)
+    across = np.linalg.svd(single.monodromy + np.eye(len(single.monodromy)))[2][-1]
     normal = np.append(across, 0.0)
     place = np.append(single.state, value) + _AMPLITUDE * normal
     found = curve.point(place, normal, normal)
-    return at_phase(found.orbit, point.orbit.problem.initial_phase)
+    return found.orbit.at_phase(point.orbit.problem.initial_phase)

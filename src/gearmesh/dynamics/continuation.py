@@ -13,19 +13,12 @@ from functools import cached_property
 import numpy as np
 
 from gearmesh.dynamics.orbits import Orbit
+from gearmesh.dynamics.shots import Shot
 from gearmesh.errors import NoOrbit
 from gearmesh.model.problem import Problem
 from gearmesh.solvers.reduced import curves
 from gearmesh.solvers.reduced.curves import LARGEST_RESIDUAL, ROUNDED, is_clear
-from gearmesh.solvers.reduced.period_map import (
-    Passage,
-    Statement,
-    advance,
-    passage,
-    passage_of,
-    statement,
-    trace,
-)
+from gearmesh.solvers.reduced.period_map import Passage, Statement, passage_of, statement, trace
 
 Family = Callable[..., Problem]
 """The problem at the values of the parameters."""
@@ -42,32 +35,37 @@ class Point:
 
     Attributes
     ----------
-    place : ndarray, shape (4 + m,)
-        The state, and the m parameters in units of the curve.
+    place : ndarray, shape (k + m,)
+        The k numbers of the state, and the m parameters in units of the curve.
     values : tuple of float
         The parameters.
-    tangent : ndarray, shape (4 + m,)
+    tangent : ndarray, shape (k + m,)
         Unit tangent of the curve.
     determinant : float
         Determinant of the Jacobian of P^n(x) - x (and of the condition) in state and parameters,
         bordered by the tangent.
-    passage : Passage
-        The motion over the period of the orbit.
-    curve : Curve
+    made : callable
+        Returns the orbit.
+    passage : Passage, optional
+        The motion over the period of the orbit, if compiled code found it.
     """
 
     place: np.ndarray
     values: tuple[float, ...]
     tangent: np.ndarray
     determinant: float
-    passage: Passage
-    curve: "Curve" = field(repr=False)
+    made: Callable[[], Shot] = field(repr=False)
+    passage: Passage | None = field(default=None, repr=False)
 
     @cached_property
-    def orbit(self) -> Orbit:
+    def orbit(self) -> Shot:
         """The orbit."""
-        problem = self.curve.problem(self.values)
-        return Orbit(problem, self.curve.periods, self.place[:4], self.passage)
+        return self.made()
+
+    @property
+    def slope(self) -> float:
+        """Change of the first parameter along the tangent, in units of the curve."""
+        return float(self.tangent[-len(self.values)])
 
     def reversed(self) -> "Point":
         """Return the same point, seen in the other direction along the curve."""
@@ -89,31 +87,37 @@ class Curve:
     phase : float
         Mesh phase at which the state is taken. The state has a kink along the curve where it
         passes an end of a regime at this very phase, because damping jumps there.
+    like : Shot
+        Any motion of the solver that integrates those along the curve.
     condition : callable, optional
         A function of the orbit that is 0 along the curve. It is needed if two parameters vary.
-    value : float, optional
-        A value of nu if nu is the only parameter that varies. Then the integration itself gives the
-        derivative with respect to the mesh period, and compiled code follows the curve.
+    stretches : bool
+        Whether nu is the only parameter that varies. Then the integration itself gives the
+        derivative with respect to the mesh period, without differences.
     """
 
     family: Family
     periods: int
     units: tuple[float, ...]
     phase: float
-    condition: Callable[[Orbit], float] | None = None
-    value: float | None = None
+    like: Shot
+    condition: Callable[[Shot], float] | None = None
+    stretches: bool = False
 
     @cached_property
-    def _stated(self) -> Statement:
-        return statement(self.problem((self.value or 0.0,)), self.periods)
+    def _stated(self) -> Statement | None:
+        """The problem for the compiled code, if that follows the curve."""
+        if self.condition is not None or not self.stretches or not isinstance(self.like, Orbit):
+            return None
+        return statement(self._problem((self.like.problem.nu,)), self.periods)
 
     def point(self, place: np.ndarray, normal: np.ndarray, along: np.ndarray) -> Point:
         """Return the point of the curve in the plane through `place` with the given normal.
 
         Parameters
         ----------
-        place, normal : ndarray, shape (4 + m,)
-        along : ndarray, shape (4 + m,)
+        place, normal : ndarray, shape (k + m,)
+        along : ndarray, shape (k + m,)
             Direction that the tangent follows.
 
         Raises
@@ -121,8 +125,8 @@ class Curve:
         NoOrbit
             If Newton's method does not converge.
         """
-        if self.value is not None:
-            point = self._traced(place, normal, _MOST_CORRECTIONS)
+        if self._stated is not None:
+            point = self._traced(self._stated, place, normal, _MOST_CORRECTIONS)
             return point if point.tangent @ along > 0.0 else point.reversed()
         origin, best = place, np.inf
         orbit = self._orbit(place)
@@ -135,7 +139,7 @@ class Curve:
             found, found_orbit = place, orbit
             if best < ROUNDED:
                 break
-            gradients[:4, :4] = orbit.passage.jacobian - np.eye(4)
+            self._differentiate(orbit, gradients)
             try:
                 correction = np.linalg.solve(
                     np.vstack([gradients, normal]), np.append(defect, normal @ (place - origin))
@@ -148,60 +152,67 @@ class Curve:
             raise NoOrbit(f"the corrector stops at a residual of {best:.1e}")
         return self._with_tangent(found, found_orbit, along)
 
-    def _traced(self, place: np.ndarray, normal: np.ndarray, corrections: int) -> Point:
+    def beside(self, point: Point, length: float) -> Point:
+        """Return the point at a small distance along the tangent, where the curve still is."""
+        place = point.place + length * point.tangent
+        if self._stated is not None:
+            return self._traced(self._stated, place, point.tangent, 0)
+        return self._with_tangent(place, self._orbit(place), point.tangent)
+
+    def _traced(
+        self, stated: Statement, place: np.ndarray, normal: np.ndarray, corrections: int
+    ) -> Point:
         """Return the point that compiled code finds."""
-        points, events, _ = trace(self._stated, place, normal, self.units[0], corrections)
-        point = self._found(points[0], events[0])
-        if point.passage.status != "complete":
-            raise NoOrbit(f"the motion ends with {point.passage.status}")
-        residual = np.abs(point.passage.end - point.place[:4]).max()
+        points, events, _ = trace(stated, place, normal, self.units[0], corrections)
+        point, moved = self._found(stated, points[0], events[0])
+        if moved.status != "complete":
+            raise NoOrbit(f"the motion ends with {moved.status}")
+        residual = np.abs(moved.end - point.place[:4]).max()
         if corrections and not residual < LARGEST_RESIDUAL:
             raise NoOrbit(f"the corrector stops at a residual of {residual:.1e}")
         return point
 
-    def _found(self, point: np.ndarray, events: np.ndarray) -> Point:
-        """Return a point of the compiled code."""
-        return Point(
+    def _found(
+        self, stated: Statement, point: np.ndarray, events: np.ndarray
+    ) -> tuple[Point, Passage]:
+        """Return a point of the compiled code, and its motion."""
+        values = (float(point[4]) * self.units[0],)
+        moved = passage_of(stated, self.units[0], point, events)
+        found = Point(
             point[: curves.DIMENSIONS],
-            (float(point[4]) * self.units[0],),
+            values,
             point[curves.TANGENT : curves.DETERMINANT],
             float(point[curves.DETERMINANT]),
-            passage_of(self._stated, self.units[0], point, events),
-            self,
+            lambda: self._bare(values, point[:4], moved),
+            moved,
         )
+        return found, moved
 
-    def beside(self, point: Point, length: float) -> Point:
-        """Return the point at a small distance along the tangent, where the curve still is."""
-        place = point.place + length * point.tangent
-        if self.value is not None:
-            return self._traced(place, point.tangent, 0)
-        return self._with_tangent(place, self._orbit(place), point.tangent)
-
-    def _with_tangent(self, place: np.ndarray, orbit: Orbit, along: np.ndarray) -> Point:
+    def _with_tangent(self, place: np.ndarray, orbit: Shot, along: np.ndarray) -> Point:
         gradients = self._gradients(place, orbit)
         tangent = np.linalg.svd(gradients)[2][-1]
         if tangent @ along < 0.0:
             tangent = -tangent
         determinant = float(np.linalg.det(np.vstack([gradients, tangent])))
-        return Point(place, self._values(place), tangent, determinant, orbit.passage, self)
+        return Point(place, self._values(place), tangent, determinant, lambda: orbit)
 
-    def at(self, orbit: Orbit, values: tuple[float, ...]) -> Point:
+    def at(self, orbit: Shot, values: tuple[float, ...]) -> Point:
         """Return the point near `orbit` at a value of the first parameter, or near several.
 
         Its tangent points to more of the first parameter.
         """
-        up = np.zeros(4 + len(values))
-        up[4] = 1.0
+        up = np.zeros(orbit.state.size + len(values))
+        up[orbit.state.size] = 1.0
         return self.point(np.append(orbit.state, np.divide(values, self.units)), up, up)
 
     def moved_to(self, phase: float, point: Point) -> tuple["Curve", Point]:
         """Return the curve with its state taken at another phase, and a point on it."""
         other = replace(self, phase=phase)
         near = self.step(point, _DIFFERENCE)
-        here, there = (at_phase(one.orbit, phase).state for one in (point, near))
-        along = np.append((there - here) / _DIFFERENCE, point.tangent[4:])
+        here, there = (one.orbit.at_phase(phase).state for one in (point, near))
+        along = np.append((there - here) / _DIFFERENCE, point.tangent[here.size :])
         along /= np.linalg.norm(along)
-        return other, other.point(np.append(here, point.place[4:]), along, along)
+        return other, other.point(np.append(here, point.place[here.size :]), along, along)
 
     def step(self, point: Point, length: float) -> Point:
         """Return the point one step ahead along the tangent."""
@@ -220,13 +231,14 @@ class Curve:
         NoOrbit
             If the curve cannot be followed further.
         """
-        if self.value is None:
+        stated = self._stated
+        if stated is None:
             following, length = self._step_on(point, length)
             size = max(following.orbit.y_max, -following.orbit.y_min)
             grown = min(curves.GROWTH * length, longest * max(1.0, size / curves.LARGE))
             return [following], grown
         points, events, length = trace(
-            self._stated,
+            stated,
             point.place,
             point.tangent,
             self.units[0],
@@ -238,7 +250,7 @@ class Curve:
         )
         if len(points) == 1:
             raise NoOrbit("it bends too sharply")
-        return [self._found(points[i], events[i]) for i in range(1, len(points))], length
+        return [self._found(stated, points[i], events[i])[0] for i in range(1, len(points))], length
 
     def _step_on(self, point: Point, length: float) -> tuple[Point, float]:
         """Return the next point after `point` and the length of the step that reaches it."""
@@ -255,68 +267,77 @@ class Curve:
             length *= 0.5
         raise NoOrbit(reason)
 
-    def problem(self, values: tuple[float, ...]) -> Problem:
+    def _problem(self, values: tuple[float, ...]) -> Problem:
         """Return the problem at values of the parameters, with its state taken at the phase."""
         problem = self.family(*values)
-        if problem.initial_phase == self.phase and problem.initial_state is None:
-            return problem
-        return replace(problem, initial_phase=self.phase, initial_state=None)
+        return (
+            problem
+            if problem.initial_phase == self.phase
+            else replace(problem, initial_phase=self.phase)
+        )
 
-    def _orbit(self, place: np.ndarray) -> Orbit:
-        problem = self.problem(self._values(place))
-        moved = passage(problem, place[:4], self.periods)
-        if moved.status != "complete":
-            raise NoOrbit(f"the motion ends with {moved.status}")
-        return Orbit(problem, self.periods, place[:4], moved)
+    def _bare(self, values: tuple[float, ...], state: np.ndarray, moved: Passage) -> Orbit:
+        """Return an orbit of the reduced system whose motion is known."""
+        problem = self._problem(values)
+        if problem.initial_state is not None:
+            problem = replace(problem, initial_state=None)
+        return Orbit(problem, self.periods, state, moved)
+
+    def _orbit(self, place: np.ndarray) -> Shot:
+        problem = self._problem(self._values(place))
+        return self.like.shot(problem, place[: -len(self.units)], self.periods)
 
     def _values(self, place: np.ndarray) -> tuple[float, ...]:
-        return tuple(float(value) for value in place[4:] * self.units)
+        return tuple(float(value) for value in place[-len(self.units) :] * self.units)
 
-    def _defect(self, orbit: Orbit) -> np.ndarray:
-        defect = orbit.passage.end - orbit.state
+    def _defect(self, orbit: Shot) -> np.ndarray:
+        defect = orbit.defect
         return defect if self.condition is None else np.append(defect, self.condition(orbit))
 
-    def _gradients(self, place: np.ndarray, orbit: Orbit, rough: bool = False) -> np.ndarray:
+    def _gradients(self, place: np.ndarray, orbit: Shot, rough: bool = False) -> np.ndarray:
         """Return the gradients of the defect, by differences where the integration gives none.
 
         They are one-sided if rough: good enough for the direction of Newton's steps, which does not
         change the point to which they converge.
         """
         gradients = np.zeros((len(place) - 1, len(place)))
-        gradients[:4, :4] = orbit.passage.jacobian - np.eye(4)
-        for i in range(4 if self.condition is None else 0, len(place)):
+        self._differentiate(orbit, gradients)
+        if self.stretches and orbit.stretched is not None:
+            return gradients
+        k = orbit.state.size
+        for i in range(k if self.condition is None else 0, len(place)):
             away = _DIFFERENCE * np.eye(len(place))[i]
             ahead = self._defect(self._orbit(place + away))
             behind = self._defect(orbit if rough else self._orbit(place - away))
             difference = (ahead - behind) / (_DIFFERENCE if rough else 2.0 * _DIFFERENCE)
-            gradients[0 if i >= 4 else 4 :, i] = difference[0 if i >= 4 else 4 :]
+            gradients[0 if i >= k else k :, i] = difference[0 if i >= k else k :]
         return gradients
 
+    def _differentiate(self, orbit: Shot, gradients: np.ndarray) -> None:
+        """Write the gradients that the integration gives."""
+        k = orbit.state.size
+        gradients[:k, :k] = orbit.gradient
+        if self.stretches and orbit.stretched is not None:
+            gradients[:, k] = orbit.stretched * (-self.units[0] / orbit.problem.nu)
 
-def frequency(family: Family, value: float) -> float | None:
-    """Return `value` if the only parameter of a family is nu."""
+
+def stretches(family: Family, value: float) -> bool:
+    """Return whether the only parameter of a family is nu."""
     here, there = family(value), family(1.001 * value)
-    return value if here.nu == value and there == replace(here, nu=1.001 * value) else None
+    return here.nu == value and there == replace(here, nu=1.001 * value)
 
 
-def at_phase(orbit: Orbit, phase: float) -> Orbit:
-    """Return an orbit with its state taken at another mesh phase."""
-    share = (phase - orbit.problem.initial_phase) % 1.0
-    if share == 0.0:
-        return orbit
-    state = advance(orbit.problem, orbit.state, share)
-    problem = replace(orbit.problem, initial_phase=phase)
-    return Orbit(problem, orbit.periods, state, passage(problem, state, orbit.periods))
-
-
-def clear_phase(orbit: Orbit) -> float:
+def clear_phase(orbit: Shot) -> float:
     """Return a mesh phase at which the orbit is far from the ends of its regimes.
 
     The phase of the orbit's state is kept if it is at least half as far from them as the best
-    phase.
+    phase, or if mesh periods differ, because it fixes the angles of the shafts.
     """
-    phase, backlash = orbit.problem.initial_phase, orbit.problem.backlash
-    if not is_clear.py_func(orbit.y, orbit.y_max, orbit.y_min, backlash):
+    phase = orbit.problem.initial_phase
+    if orbit.repeats_after > 1:
+        return phase
+    backlash = orbit.problem.backlash
+    if not is_clear.py_func(orbit.y, orbit.y_max, orbit.y_min, backlash):  # type: ignore[attr-defined]
         course = orbit.time_course(_PLACES)
         away = np.minimum(np.abs(course.y), np.abs(course.y + backlash))
         phase += int(np.argmax(away)) / _PLACES

@@ -1,30 +1,43 @@
-"""Periodic orbits of the general solver: unequal wheels, profile deviation, Fourier stiffness, ...
+"""Periodic orbits of the general solver: unequal wheels, run-out, profile deviation, ...
 
-The state of an orbit holds the coordinates that the general solver integrates, and their rates. The
-stroboscopic map is smooth in this state as long as the orbit does not graze, so differences of
-sixth order between runs give its Jacobian: with steps of 1e-3 y_st both their truncation error and
-the rounding error of the runs stay below 1e-8.
+The numbers in which an orbit is sought are those of `gearmesh.dynamics.charts`, which states what
+an orbit is if the mean rotation drifts. The map over the period is smooth in them as long as the
+orbit does not graze, so differences of sixth order between runs give its Jacobian: with steps of
+1e-3 y_st both their truncation error and the rounding error of the runs stay below 1e-8. Close to
+a grazing, or where friction begins to stick, steps are smaller and the rounding error is larger.
 """
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from itertools import chain, pairwise
 
 import numpy as np
 
-from gearmesh.dynamics.orbits import LARGEST_RESIDUAL, TimeCourse, sorted_multipliers
+from gearmesh.dynamics.charts import (
+    HELD,
+    Chart,
+    chart_of,
+    state_at_place,
+    with_moments,
+)
+from gearmesh.dynamics.orbits import TimeCourse, sorted_multipliers
 from gearmesh.errors import NoOrbit
 from gearmesh.model.contact import regime_of
-from gearmesh.model.motion import Y_2, Y_3, relative_motion, start
+from gearmesh.model.motion import start
 from gearmesh.model.problem import Problem, State
-from gearmesh.solvers.full.coordinates import embedding, projected
-from gearmesh.solvers.full.runs import integrate
+from gearmesh.solvers.full.runs import advance, integrate
+from gearmesh.solvers.reduced.curves import LARGEST_RESIDUAL
+from gearmesh.solvers.reduced.variational import EVENT_SIZE
 from gearmesh.solvers.response import Response
 
 _TOLERANCE = 1e-14
 _DIFFERENCE = 1e-3
-_WEIGHTS = {1: 45.0 / 60.0, 2: -9.0 / 60.0, 3: 1.0 / 60.0}
+_SHARES = (1.0, 0.1, 0.01, 0.001)
+_SMOOTH = 1e-8  # difference between orders without a kink
+_SIXTH = np.array([-1.0, 9.0, -45.0, 45.0, -9.0, 1.0]) / 60.0
+_FOURTH = np.array([0.0, 1.0, -8.0, 8.0, -1.0, 0.0]) / 12.0
 _MOST_CORRECTIONS = 30
 _SHORTEST_CORRECTION = 1.0 / 64.0
 _TRANSIENT = 1000  # mesh periods after which the end of a run serves as an initial state
@@ -39,23 +52,60 @@ class GeneralOrbit:
     Attributes
     ----------
     problem : Problem
+        The gear pair as stated, without the moments that hold its mean rotation.
     periods : int
         The least period n, in mesh periods.
-    state : ndarray, shape (m,)
-        Coordinates of `gearmesh.solvers.full.coordinates` and their rates at the initial phase.
-    jacobian : ndarray, shape (m, m)
-        Of the map over the period.
-    response : Response
-        The motion over the period.
-    end : ndarray, shape (m,)
+    state : ndarray, shape (k,)
+        The unknowns of `gearmesh.dynamics.charts.Chart` at the initial phase.
+    angle : float
+        The mean rotation at the initial phase, in y_st on the base circles.
+    end : ndarray, shape (2 n,)
+        Coordinates and rates after the period.
     """
 
     problem: Problem
     periods: int
     state: np.ndarray
-    jacobian: np.ndarray = field(repr=False)
-    response: Response = field(repr=False)
+    angle: float
     end: np.ndarray = field(repr=False)
+
+    @cached_property
+    def chart(self) -> Chart:
+        """The coordinates."""
+        return chart_of(self.problem)
+
+    @property
+    def start(self) -> np.ndarray:
+        """Coordinates and rates at the initial phase, shape (2 n,)."""
+        return self.chart.place(self.state, self.angle)
+
+    @property
+    def holding_moments(self) -> tuple[float, float]:
+        """Constant moments on wheels 3 and 2 over R_bi, in F_st, that hold the mean rotation."""
+        return self.chart.moments(self.problem, self.state, self.periods)
+
+    @property
+    def held(self) -> Problem:
+        """The gear pair under the holding moments, whose runs from `initial_state` repeat."""
+        return with_moments(self.problem, self.holding_moments)
+
+    @property
+    def initial_state(self) -> State:
+        """The state as a run starts from it, with the shafts at their angles of t = 0."""
+        return state_at_place(self.problem, self.start)
+
+    @property
+    def repeats_after(self) -> int:
+        """Mesh periods after which the excitation repeats."""
+        return common_period(self.problem)
+
+    @cached_property
+    def response(self) -> Response:
+        """The motion over the period."""
+        return self._response(1)
+
+    def _response(self, samples_per_period: int) -> Response:
+        return _run(self.held, self.initial_state, self.periods, samples_per_period)
 
     @property
     def y(self) -> float:
@@ -78,30 +128,87 @@ class GeneralOrbit:
         return self.response.y_min
 
     @property
+    def extrema(self) -> np.ndarray:
+        """Extrema of y over the orbit's own period, shape (n, 3): time, y, kind (1 or -1)."""
+        found = self.response
+        return np.column_stack([found.extremum_time, found.extremum_y, found.extremum_kind])
+
+    @property
+    def stiffness_jumps(self) -> np.ndarray:
+        """Events at which C(t) jumps: none, because the general solver does not list them."""
+        return np.empty((0, EVENT_SIZE))
+
+    @property
+    def defect(self) -> np.ndarray:
+        """By how much the motion fails to close, shape (k,)."""
+        return self.chart.closing(self.start, self.end)
+
+    @property
     def residual(self) -> float:
         """|P^n(x) - x|."""
-        return float(np.abs(self.end - self.state).max())
+        return float(np.abs(self.defect).max())
+
+    @cached_property
+    def jacobian(self) -> np.ndarray:
+        """Jacobian of the coordinates and rates over the period, shape (2 n, 2 n)."""
+        return self._jacobian(_DIFFERENCE)
+
+    @cached_property
+    def gradient(self) -> np.ndarray:
+        """Jacobian of the defect in the state, shape (k, k)."""
+        if self.chart.rotation == HELD:
+            first = np.eye(self.state.size)[0]
+            pushed = _slope(self._end_under, self.state, first)
+            others = self.jacobian[:, 1:] - np.eye(self.end.size)[:, 1:]
+            return np.column_stack([pushed, others])
+        return self.monodromy - np.eye(self.state.size)
+
+    @property
+    def stretched(self) -> None:
+        """Not known: differences replace it."""
+        return None
+
+    @property
+    def monodromy(self) -> np.ndarray:
+        """Jacobian over the period with the mean rotation left out."""
+        return self.chart.monodromy(self.jacobian)
 
     @cached_property
     def multipliers(self) -> np.ndarray:
-        """Floquet multipliers, complex array of shape (m,), the largest modulus first."""
-        return sorted_multipliers(np.linalg.eigvals(self.jacobian))
+        """Floquet multipliers, a complex array, the largest modulus first."""
+        return sorted_multipliers(np.linalg.eigvals(self.monodromy))
 
     @property
     def multiplier_error(self) -> float:
-        """Change of the multipliers with differences of a quarter of the step."""
-        finer = _jacobian(self.problem, self.state, self.periods, 0.25 * _DIFFERENCE)
+        """Change of the multipliers with differences of a quarter of the largest step."""
+        finer = self.chart.monodromy(self._jacobian(0.25 * _DIFFERENCE))
         others = np.linalg.eigvals(finer)
         return max(float(np.abs(others - one).min()) for one in self.multipliers)
+
+    def _jacobian(self, step: float) -> np.ndarray:
+        along = np.eye(self.end.size)
+        return np.array([_slope(self._end_from, self.start, one, step) for one in along]).T
+
+    def _end_from(self, place: np.ndarray) -> np.ndarray:
+        held = self.held
+        return _end(held, state_at_place(held, place), self.periods)
+
+    def _end_under(self, state: np.ndarray) -> np.ndarray:
+        return self.shot(self.problem, state, self.periods).end
+
+    @property
+    def undamped(self) -> bool:
+        """Whether no damping of the mesh acts along the orbit."""
+        lost = self.response.contact_loss_fraction
+        return not (
+            (lost > 0.0 and any(self.problem.lubricant))
+            or (lost < 1.0 and any(self.problem.material))
+        )
 
     @property
     def neutral(self) -> bool:
         """Whether no damping of the mesh acts along the orbit and nothing grows."""
-        lost = self.response.contact_loss_fraction
-        damped = (lost > 0.0 and any(self.problem.lubricant)) or (
-            lost < 1.0 and any(self.problem.material)
-        )
-        return not damped and abs(self.multipliers[0]) < 1.0 + _LEAST_GROWTH
+        return self.undamped and abs(self.multipliers[0]) < 1.0 + _LEAST_GROWTH
 
     @property
     def stable(self) -> bool:
@@ -125,28 +232,63 @@ class GeneralOrbit:
 
     def time_course(self, samples_per_period: int = 256) -> TimeCourse:
         """Return the time course, with `samples_per_period` samples in a mesh period."""
-        found = _run(self.problem, self.state, self.periods, samples_per_period).samples
+        found = self._response(samples_per_period).samples
         if found is None:
             raise NoOrbit("the motion of the orbit cannot be integrated")
         return TimeCourse(found.time, found.y, found.v, found.a, found.regime)
 
+    def shot(self, problem: Problem, state: np.ndarray, periods: int) -> "GeneralOrbit":
+        """Return another motion, from `state` over mesh periods.
 
-def repeats_after(problem: Problem) -> int | None:
-    """Return after how many mesh periods the excitation repeats; None if it need not.
+        Raises
+        ------
+        NoOrbit
+            If the motion cannot be integrated.
+        """
+        if chart_of(problem).columns.shape != self.chart.columns.shape:
+            raise NoOrbit("other coordinates are needed there: a term appears or vanishes")
+        return _shot(problem, state, periods, self.angle)
 
-    It need not with run-out, which follows the angles of the shafts that nothing holds, nor with
-    damping of the rotations to the frame.
+    def at_phase(self, phase: float) -> "GeneralOrbit":
+        """Return the orbit with its state taken at another mesh phase.
+
+        Raises
+        ------
+        NoOrbit
+            If mesh periods differ: then the phase fixes the angles of the shafts.
+        """
+        share = (phase - self.problem.initial_phase) % 1.0
+        if share == 0.0:
+            return self
+        six = advance(replace(self.held, initial_state=self.initial_state), share, _TOLERANCE)
+        if six is None or self.repeats_after > 1:
+            raise NoOrbit("the state of the orbit can be taken at no other phase")
+        place = self.chart.place_of_six(six)
+        problem = replace(self.problem, initial_phase=phase)
+        return _shot(problem, self.chart.unknowns(place), self.periods, float(place[0]))
+
+
+def common_period(problem: Problem) -> int:
+    """Return after how many mesh periods the excitation repeats.
+
+    Raises
+    ------
+    NoOrbit
+        If it never does.
     """
     terms = problem.terms
-    if problem.has_run_out or any(terms.torsional_damping):
-        return None
-    harmonics = (*terms.torque_harmonics_3, *terms.torque_harmonics_2, *terms.backlash_harmonics)
-    if not terms.tooth_factors and all(float(one.order).is_integer() for one in harmonics):
-        return 1
     wheel_3, wheel_2 = problem.both_wheels
-    common = math.lcm(wheel_3.teeth, wheel_2.teeth)
-    whole = all(abs(one.order * common - round(one.order * common)) < _SAME for one in harmonics)
-    return common if whole else None
+    both = math.lcm(wheel_3.teeth, wheel_2.teeth)
+    harmonics = (*terms.torque_harmonics_3, *terms.torque_harmonics_2, *terms.backlash_harmonics)
+    if any(abs(one.order * both - round(one.order * both)) > _SAME for one in harmonics):
+        raise NoOrbit("the excitation has frequencies of no common period with mesh and shafts")
+    of_teeth = terms.tooth_factors or terms.pitch_errors_3 or terms.pitch_errors_2
+    if of_teeth or not all(float(one.order).is_integer() for one in harmonics):
+        return both
+    return math.lcm(
+        wheel_3.teeth if problem.eccentricity_3 else 1,
+        wheel_2.teeth if problem.eccentricity_2 else 1,
+    )
 
 
 def find_orbit(problem: Problem, periods: int = 1) -> GeneralOrbit:
@@ -159,95 +301,105 @@ def find_orbit(problem: Problem, periods: int = 1) -> GeneralOrbit:
     NoOrbit
         If there is none, or if the excitation does not repeat.
     """
-    common = repeats_after(problem)
-    if common is None:
-        raise NoOrbit(
-            "orbits: run-out and torsional damping are not covered: nothing holds the shafts"
-        )
+    common = common_period(problem)
     if periods % common:
         raise NoOrbit(
             f"the excitation repeats after {common} mesh periods; periods has to be a multiple"
         )
-    return _correct(problem, _start(problem), periods)
+    bare = replace(problem, initial_state=None)
+    place = chart_of(problem).place_of_six(np.concatenate(start(problem)))
+    if problem.initial_state is None:
+        return _correct(_settled(bare, place, common, periods))
+    passed = problem.start_period % common
+    if passed:
+        place = _end(bare, problem.initial_state, common - passed)
+    return _correct(_shot(bare, chart_of(problem).unknowns(place), periods, float(place[0])))
 
 
-def _start(problem: Problem) -> np.ndarray:
-    """Return the initial state if it is given, else the end of a long run from rest."""
-    state = _reduced(problem, np.concatenate(start(problem)))
-    return _ends(problem, state, _TRANSIENT) if problem.initial_state is None else state
+def _settled(problem: Problem, place: np.ndarray, common: int, periods: int) -> GeneralOrbit:
+    """Return the motion at the end of a long run from a place.
+
+    If the mean rotation has to be held, a drive corrects it after every common period.
+    """
+    chart = chart_of(problem)
+    angle, pushed, duration = float(place[0]), 0.0, common * problem.period
+    for _ in range(math.ceil(_TRANSIENT / common)):
+        moved = _shot(problem, chart.unknowns(place, pushed), common, angle)
+        place = moved.end.copy()
+        if chart.rotation == HELD:
+            gained, sped = (moved.end - moved.start)[[0, chart.n]]
+            pushed -= float(sped) * duration
+            place[0] = angle
+            place[chart.n] = moved.start[chart.n] - gained / duration + 0.5 * sped
+    return _shot(problem, chart.unknowns(place, pushed * (periods / common) ** 2), periods, angle)
 
 
-def _correct(problem: Problem, state: np.ndarray, periods: int) -> GeneralOrbit:
+def _correct(orbit: GeneralOrbit) -> GeneralOrbit:
     """Return the orbit to which Newton's method leads."""
-    end = _ends(problem, state, periods)
+    problem, periods = orbit.problem, orbit.periods
     for _ in range(_MOST_CORRECTIONS):
-        defect = float(np.abs(end - state).max())
-        jacobian = _jacobian(problem, state, periods)
-        matrix = jacobian - np.eye(len(state))
-        correction = np.linalg.lstsq(matrix, state - end, rcond=1e-14)[0]
+        correction = np.linalg.lstsq(orbit.gradient, -orbit.defect, rcond=1e-14)[0]
         share = 1.0
-        shortest = 1.0 if defect < LARGEST_RESIDUAL else _SHORTEST_CORRECTION
+        shortest = 1.0 if orbit.residual < LARGEST_RESIDUAL else _SHORTEST_CORRECTION
         while share >= shortest:
-            candidate = state + share * correction
-            reached = _ends(problem, candidate, periods)
-            if np.abs(reached - candidate).max() < (1.0 - 0.1 * share) * defect:
+            candidate = orbit.shot(problem, orbit.state + share * correction, periods)
+            if candidate.residual < (1.0 - 0.1 * share) * orbit.residual:
                 break
             share *= 0.5
         else:
             break
-        state, end = candidate, reached
-    if not np.abs(end - state).max() < LARGEST_RESIDUAL:
-        raise NoOrbit(f"Newton's method stops at a residual of {np.abs(end - state).max():.1e}")
-    for shorter in range(1, periods):
-        if periods % shorter == 0 and np.abs(_ends(problem, state, shorter) - state).max() < _SAME:
-            raise NoOrbit(f"Newton's method leads to an orbit of period {shorter}")
-    response = _run(problem, state, periods, 1)
-    return GeneralOrbit(problem, periods, state, jacobian, response, end)
+        orbit = candidate
+    if not orbit.residual < LARGEST_RESIDUAL:
+        raise NoOrbit(f"Newton's method stops at a residual of {orbit.residual:.1e}")
+    for shorter in range(orbit.repeats_after, periods, orbit.repeats_after):
+        if periods % shorter == 0:
+            end = _end(orbit.held, orbit.initial_state, shorter)
+            if np.abs(orbit.chart.closing(orbit.start, end)).max() < _SAME:
+                raise NoOrbit(f"Newton's method leads to an orbit of period {shorter}")
+    return orbit
 
 
-def _jacobian(
-    problem: Problem, state: np.ndarray, periods: int, step: float = _DIFFERENCE
+def _slope(
+    function: Callable[[np.ndarray], np.ndarray],
+    place: np.ndarray,
+    along: np.ndarray,
+    largest: float = _DIFFERENCE,
 ) -> np.ndarray:
-    """Return the Jacobian of the map over mesh periods by differences of sixth order."""
-    columns = []
-    for direction in np.eye(len(state)):
-        column = np.zeros(len(state))
-        for steps, weight in _WEIGHTS.items():
-            away = steps * step * direction
-            ahead, behind = (_ends(problem, state + one, periods) for one in (away, -away))
-            column += weight / step * (ahead - behind)
-        columns.append(column)
-    return np.array(columns).T
+    """Return the derivative of a function along a direction, by differences of sixth order.
+
+    Those of fourth order differ if the function has a kink nearby. Steps of at most `largest` then
+    become smaller.
+    """
+    best = np.inf
+    for step in largest * np.array(_SHARES):
+        sides = [function(place + n * step * along) for n in (-3, -2, -1, 1, 2, 3)]
+        sixth, fourth = (np.dot(weights, sides) / step for weights in (_SIXTH, _FOURTH))
+        error = float(np.abs(sixth - fourth).max())
+        if error < best:
+            found, best = sixth, error
+        if error < _SMOOTH:
+            break
+    return np.asarray(found)
 
 
-def _ends(problem: Problem, state: np.ndarray, periods: int) -> np.ndarray:
-    """Return the state after mesh periods."""
-    final = _run(problem, state, periods, 0).final_state
-    if final is None or final.coordinates is None:
-        raise NoOrbit("the motion cannot be integrated over the period")
-    return _reduced(problem, np.array(final.coordinates))
-
-
-def _reduced(problem: Problem, six: np.ndarray) -> np.ndarray:
-    """Return the coordinates and rates that are integrated."""
-    columns = embedding(problem)
-    n = columns.shape[1]
-    found = projected(six, columns)
-    return np.concatenate([found[:n], found[6 : 6 + n]])
-
-
-def state_of(problem: Problem, state: np.ndarray) -> State:
-    """Return the state of an orbit as a run starts from it."""
-    columns = embedding(problem)
-    n = columns.shape[1]
-    q, v = columns @ state[:n], columns @ state[n:]
+def _shot(problem: Problem, state: np.ndarray, periods: int, angle: float) -> GeneralOrbit:
+    """Return a motion from the unknowns of an orbit."""
     bare = replace(problem, initial_state=None)
-    y, rate = relative_motion(bare, bare.start_time, q, v)
-    both = (*q.tolist(), *v.tolist())
-    return State(y, rate, q[Y_3] - q[Y_2], v[Y_3] - v[Y_2], coordinates=both)
+    chart = chart_of(bare)
+    held = with_moments(bare, chart.moments(bare, state, periods))
+    begun = state_at_place(held, chart.place(state, angle))
+    return GeneralOrbit(bare, periods, state, angle, _end(held, begun, periods))
 
 
-def _run(problem: Problem, state: np.ndarray, periods: int, samples_per_period: int) -> Response:
+def _end(problem: Problem, begun: State, periods: int) -> np.ndarray:
+    """Return coordinates and rates after mesh periods."""
+    found = _run(problem, begun, periods, 0)
+    if found.final_state is None or found.final_state.coordinates is None:
+        raise NoOrbit(f"the motion cannot be integrated over the period: {found.status}")
+    return chart_of(problem).place_of_six(np.array(found.final_state.coordinates))
+
+
+def _run(problem: Problem, begun: State, periods: int, samples_per_period: int) -> Response:
     """Integrate whole mesh periods; they are kept if samples are wanted."""
     # A run takes whole revolutions: with a "revolution" of one period it takes any number of
     # mesh periods. The wheels keep their teeth.
@@ -257,6 +409,6 @@ def _run(problem: Problem, state: np.ndarray, periods: int, samples_per_period: 
         teeth=1,
         revolutions=periods,
         kept_revolutions=periods if samples_per_period else 0,
-        initial_state=state_of(problem, state),
+        initial_state=begun,
     )
     return integrate(run, _TOLERANCE, samples_per_period, estimate_errors=False)

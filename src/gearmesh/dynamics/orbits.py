@@ -20,8 +20,10 @@ from gearmesh.solvers.reduced.period_map import (
     FIXED,
     LONGEST_ANGLE,
     Passage,
+    advance,
     passage,
     passage_of,
+    segments_of,
     statement,
     trace,
 )
@@ -32,6 +34,8 @@ from gearmesh.solvers.reduced.variational import (
     HEIGHT,
     KIND,
     REGIME,
+    SEGMENT,
+    SWITCH,
     TIME,
     TURN,
 )
@@ -109,6 +113,11 @@ class Orbit:
     passage: Passage = field(repr=False)
 
     @property
+    def repeats_after(self) -> int:
+        """Mesh periods after which the excitation repeats."""
+        return 1
+
+    @property
     def y(self) -> float:
         """Relative motion y at the initial phase."""
         return float(self.state[0])
@@ -119,14 +128,39 @@ class Orbit:
         return float(self.state[1])
 
     @property
+    def defect(self) -> np.ndarray:
+        """P^n(x) - x, shape (4,)."""
+        return self.passage.end - self.state
+
+    @property
+    def gradient(self) -> np.ndarray:
+        """Jacobian of the defect, shape (4, 4)."""
+        return self.monodromy - np.eye(4)
+
+    @property
+    def monodromy(self) -> np.ndarray:
+        """Jacobian of P^n, shape (4, 4)."""
+        return self.passage.jacobian
+
+    @property
+    def stretched(self) -> np.ndarray:
+        """Derivative of the defect with respect to the logarithm of the mesh period."""
+        return self.passage.stretched
+
+    @property
+    def undamped(self) -> bool:
+        """Whether no damping of the mesh acts along the orbit."""
+        return self.passage.damping == 0.0
+
+    @property
     def residual(self) -> float:
         """|P^n(x) - x|."""
-        return float(np.abs(self.passage.end - self.state).max())
+        return float(np.abs(self.defect).max())
 
     @cached_property
     def multipliers(self) -> np.ndarray:
         """Floquet multipliers, complex array of shape (4,), the largest modulus first."""
-        return sorted_multipliers(np.linalg.eigvals(self.passage.jacobian))
+        return sorted_multipliers(np.linalg.eigvals(self.monodromy))
 
     @property
     def neutral(self) -> bool:
@@ -134,7 +168,7 @@ class Orbit:
 
         Its multipliers are then on the unit circle, except for the effect of the bearings.
         """
-        return self.passage.damping == 0.0 and not self._grows(_LEAST_GROWTH)
+        return self.undamped and not self._grows(_LEAST_GROWTH)
 
     @property
     def stable(self) -> bool:
@@ -162,6 +196,15 @@ class Orbit:
         """Extrema of y over the orbit's own period, shape (n, 3): time, y, kind (1 or -1)."""
         turns = self._turns
         return np.column_stack([turns[:, TIME], turns[:, HEIGHT], -np.sign(turns[:, AFTER])])
+
+    @property
+    def stiffness_jumps(self) -> np.ndarray:
+        """The events at which C(t) jumps."""
+        events = self.passage.events
+        events = events[events[:, KIND] == SWITCH]
+        stiffness = segments_of(self.problem)[:, 1]
+        number = events[:, SEGMENT].astype(int)
+        return events[stiffness[number] != stiffness[number - 1]]
 
     @property
     def _turns(self) -> np.ndarray:
@@ -195,6 +238,30 @@ class Orbit:
         return Certificate(
             self.residual, float(inside.min(initial=np.inf)), self.passage.least_force, error
         )
+
+    def shot(self, problem: Problem, state: np.ndarray, periods: int) -> "Orbit":
+        """Return another motion, from `state` over mesh periods.
+
+        Raises
+        ------
+        NoOrbit
+            If the motion cannot be integrated.
+        """
+        if problem.initial_state is not None:
+            problem = replace(problem, initial_state=None)
+        moved = passage(problem, state, periods)
+        if moved.status != "complete":
+            raise NoOrbit(f"the motion ends with {moved.status}")
+        return Orbit(problem, periods, state, moved)
+
+    def at_phase(self, phase: float) -> "Orbit":
+        """Return the orbit with its state taken at another mesh phase."""
+        share = (phase - self.problem.initial_phase) % 1.0
+        if share == 0.0:
+            return self
+        state = advance(self.problem, self.state, share)
+        problem = replace(self.problem, initial_phase=phase)
+        return Orbit(problem, self.periods, state, passage(problem, state, self.periods))
 
     def time_course(self, samples_per_period: int = 256) -> TimeCourse:
         """Return the time course, with `samples_per_period` samples in a mesh period."""

@@ -7,13 +7,12 @@ from itertools import pairwise
 import numpy as np
 
 from gearmesh.dynamics.branches import field_family
-from gearmesh.dynamics.continuation import Curve, Family, Point, at_phase, clear_phase
-from gearmesh.dynamics.orbits import Orbit
+from gearmesh.dynamics.continuation import Curve, Family, Point, clear_phase
+from gearmesh.dynamics.shots import Shot
 from gearmesh.dynamics.special_points import (
     SpecialPoint,
     flip_test,
     search,
-    stiffness_jumps,
     torus_test,
 )
 from gearmesh.dynamics.walks import LONGEST_STEP, joined, points_of, walk
@@ -33,7 +32,7 @@ class SpecialCurve:
         Names of the parameters.
     values : ndarray, shape (n, 2)
         The parameters along the curve.
-    orbits : list of Orbit
+    orbits : list of Shot
         The orbits there.
     cusps : list of SpecialPoint
         Of a curve of folds: where two folds meet and vanish.
@@ -44,7 +43,7 @@ class SpecialCurve:
     kind: str
     parameters: tuple[str, str]
     values: np.ndarray
-    orbits: list[Orbit]
+    orbits: list[Shot]
     cusps: list[SpecialPoint]
     ends: tuple[str, str]
 
@@ -85,10 +84,10 @@ def follow_special(
     problem = point.orbit.problem
     family = family or field_family(problem, *parameters)
     values = values or tuple(float(getattr(problem, name)) for name in parameters)
-    moved = at_phase(point.orbit, clear_phase(point.orbit))
+    moved = point.orbit.at_phase(clear_phase(point.orbit))
     units = tuple(high - low for low, high in limits)
     phase = moved.problem.initial_phase
-    curve = Curve(family, moved.periods, units, phase, _CONDITIONS[point.kind])
+    curve = Curve(family, moved.periods, units, phase, moved, _CONDITIONS[point.kind])
     back, ahead = walk(curve, _start(curve, moved, values), limits, longest_step)
     pieces = joined(back, ahead)
     cusps = [
@@ -99,26 +98,26 @@ def follow_special(
         for left, right in pairwise(piece.points)
         if point.kind == "fold"
         for _, cusp in search(piece.curve, left, right, [("cusp", _turned_back(left))])
-        for orbit in (at_phase(cusp.orbit, problem.initial_phase),)
+        for orbit in (cusp.orbit.at_phase(problem.initial_phase),)
     ]
     points = points_of(pieces)
     return SpecialCurve(
         point.kind,
         parameters,
         np.array([one.values for one in points]),
-        [at_phase(one.orbit, problem.initial_phase) for one in points],
+        [one.orbit.at_phase(problem.initial_phase) for one in points],
         cusps,
         (back.reason, ahead.reason),
     )
 
 
-def _start(curve: Curve, orbit: Orbit, values: tuple[float, ...]) -> Point:
+def _start(curve: Curve, orbit: Shot, values: tuple[float, ...]) -> Point:
     """Return the first point of a curve, the tangent towards more of the second parameter."""
-    for fixed in (5, 4):
-        normal = np.eye(6)[fixed]
-        place = np.append(orbit.state, np.divide(values, curve.units))
+    place = np.append(orbit.state, np.divide(values, curve.units))
+    directions = np.eye(place.size)
+    for fixed in (-1, -2):
         try:
-            return curve.point(place, normal, np.eye(6)[5])
+            return curve.point(place, directions[fixed], directions[-1])
         except NoOrbit as error:
             reason = error
     raise reason
@@ -126,27 +125,27 @@ def _start(curve: Curve, orbit: Orbit, values: tuple[float, ...]) -> Point:
 
 def _turned_back(left: Point) -> Callable[[Point], float]:
     """Return the test for a cusp: there both parameters turn back."""
-    return lambda point: float(point.tangent[4:] @ left.tangent[4:])
+    return lambda point: float(point.tangent[-2:] @ left.tangent[-2:])
 
 
-def _least_height(level: float) -> Callable[[Orbit], float]:
+def _least_height(level: float) -> Callable[[Shot], float]:
     """Return the height above a level, in multiples of the backlash, of the extremum next to it."""
 
-    def height(orbit: Orbit) -> float:
+    def height(orbit: Shot) -> float:
         above = orbit.extrema[:, 1] - level * orbit.problem.backlash
         return float(above[np.argmin(np.abs(above))])
 
     return height
 
 
-def _least_velocity(orbit: Orbit) -> float:
+def _least_velocity(orbit: Shot) -> float:
     """Return the velocity at the switch of C(t) where it is least."""
-    velocities = stiffness_jumps(orbit)[:, VELOCITY]
+    velocities = orbit.stiffness_jumps[:, VELOCITY]
     return float(velocities[np.argmin(np.abs(velocities))])
 
 
-_CONDITIONS: dict[str, Callable[[Orbit], float]] = {
-    "fold": lambda orbit: float(np.linalg.det(orbit.passage.jacobian - np.eye(4))),
+_CONDITIONS: dict[str, Callable[[Shot], float]] = {
+    "fold": lambda orbit: float(np.linalg.det(orbit.gradient)),
     "flip": flip_test,
     "torus": torus_test,
     "grazing_front": _least_height(0.0),

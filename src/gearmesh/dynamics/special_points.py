@@ -13,8 +13,9 @@ import numpy as np
 from scipy.optimize import brentq
 
 from gearmesh.dynamics.continuation import Curve, Point
-from gearmesh.dynamics.orbits import Orbit
-from gearmesh.solvers.reduced.period_map import segments_of
+from gearmesh.dynamics.shots import Shot
+from gearmesh.model.problem import Problem
+from gearmesh.solvers.reduced.period_map import Passage, segments_of
 from gearmesh.solvers.reduced.variational import (
     AFTER,
     BEFORE,
@@ -59,13 +60,13 @@ class SpecialPoint:
         Mesh frequency nu_s.
     parameters : dict
         The parameter that the branch follows, by name.
-    orbit : Orbit
+    orbit : Shot
     """
 
     kind: str
     nu: float
     parameters: dict[str, float]
-    orbit: Orbit
+    orbit: Shot
 
 
 def search(
@@ -87,10 +88,11 @@ def suspects(points: list[Point]) -> list[int]:
     at once, so that only these pieces of a branch need a closer look.
     """
     every = list(range(len(points) - 1))
-    if points[0].curve.value is None or any(not len(point.passage.events) for point in points):
+    moved = [point.passage for point in points if point.passage and len(point.passage.events)]
+    if len(moved) < len(points):
         return every
-    heights, crossings = _event_functions(points)
-    functions = np.column_stack([*_bifurcation_functions(points), *heights])
+    heights, crossings = _event_functions(points[0].orbit.problem, moved)
+    functions = np.column_stack([*_bifurcation_functions(points, moved), *heights])
     with np.errstate(invalid="ignore"):
         change = np.abs(np.diff(functions, axis=0))
         nearby = change.copy()
@@ -102,12 +104,12 @@ def suspects(points: list[Point]) -> list[int]:
     return [i for i in every if found[i]]
 
 
-def _bifurcation_functions(points: list[Point]) -> list[np.ndarray]:
+def _bifurcation_functions(points: list[Point], moved: list[Passage]) -> list[np.ndarray]:
     """Return the functions of `_bifurcation_tests`, each at all points."""
-    jacobians = np.array([point.passage.jacobian for point in points])
-    damped = np.array([point.passage.damping != 0.0 for point in points])
+    jacobians = np.array([one.jacobian for one in moved])
+    damped = np.array([one.damping != 0.0 for one in moved])
     return [
-        np.array([point.tangent[4] for point in points]),
+        np.array([point.slope for point in points]),
         np.array([point.determinant for point in points]),
         np.linalg.det(jacobians + np.eye(4)),
         np.where(damped, _pair_products(jacobians), np.nan),
@@ -129,23 +131,22 @@ def _pair_products(jacobians: np.ndarray) -> np.ndarray:
     return cubic - (one**2 * e_4 + e_3**2 - 4.0 * e_2 * e_4)
 
 
-def _event_functions(points: list[Point]) -> tuple[list[np.ndarray], np.ndarray]:
+def _event_functions(problem: Problem, moved: list[Passage]) -> tuple[list[np.ndarray], np.ndarray]:
     """Return functions that pass 0 where events appear or vanish, each at all points.
 
     They are the least distances of an extremum of y from the ends of regimes, and the velocities
     where C(t) jumps. The second result is the number of changes of regime.
     """
-    problem = points[0].orbit.problem
     stiffness = segments_of(problem)[:, 1]
-    events = np.concatenate([point.passage.events for point in points])
-    first = np.cumsum([0, *(len(point.passage.events) for point in points[:-1])])
+    events = np.concatenate([one.events for one in moved])
+    first = np.cumsum([0, *(len(one.events) for one in moved[:-1])])
     kind, height = events[:, KIND], events[:, HEIGHT]
     jumps = (kind == SWITCH) & (stiffness != np.roll(stiffness, 1))[events[:, SEGMENT].astype(int)]
     margins = [
         np.minimum.reduceat(np.where(kind == TURN, np.abs(height - level), np.inf), first)
         for level in (0.0, -problem.backlash)
     ]
-    velocities = events[jumps, VELOCITY].reshape(len(points), -1)
+    velocities = events[jumps, VELOCITY].reshape(len(moved), -1)
     return [*margins, *velocities.T], np.add.reduceat(kind == CROSSING, first, dtype=int)
 
 
@@ -173,7 +174,7 @@ def _once(events: list[tuple[str, Point]]) -> list[tuple[str, Point]]:
     kept: list[tuple[str, Point]] = []
     for kind, point in events:
         again = kind == "switching" and any(
-            kind == other and abs(point.place[4] - known.place[4]) < _SAME_SWITCHING
+            kind == other and abs(point.place[-1] - known.place[-1]) < _SAME_SWITCHING
             for other, known in kept
         )
         kept += [] if again else [(kind, point)]
@@ -250,27 +251,27 @@ def _confirmed(
     if not abs(test(point)) < _LARGEST_VALUE * scale:
         return False
     if kind == "fold":
-        return min(abs(left.tangent[4]), abs(right.tangent[4])) > _LEAST_SLOPE
+        return min(abs(left.slope), abs(right.slope)) > _LEAST_SLOPE
     if kind == "torus":
         return _has_pair_on_the_unit_circle(point.orbit)
     if kind == "switching":
         return _turns_at_a_switch(point.orbit)
     if kind == "branch_point":
-        return left.tangent[4] * right.tangent[4] > 0.0
+        return left.slope * right.slope > 0.0
     return True
 
 
-def _turns_at_a_switch(orbit: Orbit) -> bool:
+def _turns_at_a_switch(orbit: Shot) -> bool:
     """Return whether turning points appear or vanish where the velocity at a switch is 0.
 
     They do if y'' has different signs before and after the switch. Where nothing is damped, y'' may
     be 0 on one side. If the signs are equal, a turning point only passes the switch.
     """
-    still = [s for s in stiffness_jumps(orbit) if abs(s[VELOCITY]) < _LARGEST_VALUE]
+    still = [s for s in orbit.stiffness_jumps if abs(s[VELOCITY]) < _LARGEST_VALUE]
     return any(s[BEFORE] * s[AFTER] < _LARGEST_VALUE for s in still)
 
 
-def _has_pair_on_the_unit_circle(orbit: Orbit) -> bool:
+def _has_pair_on_the_unit_circle(orbit: Shot) -> bool:
     """Return whether the multipliers with the product 1 are a complex pair, not two real ones."""
     products = [(abs(a * b - 1.0), a) for a, b in combinations(orbit.multipliers, 2)]
     return bool(abs(min(products, key=lambda item: item[0])[1].imag) > 1e-6)
@@ -278,16 +279,16 @@ def _has_pair_on_the_unit_circle(orbit: Orbit) -> bool:
 
 def _bifurcation_tests() -> list[Test]:
     return [
-        ("fold", lambda point: float(point.tangent[4])),
+        ("fold", lambda point: point.slope),
         ("branch_point", lambda point: point.determinant),
         ("flip", lambda point: flip_test(point.orbit)),
         ("torus", lambda point: torus_test(point.orbit)),
     ]
 
 
-def flip_test(orbit: Orbit) -> float:
+def flip_test(orbit: Shot) -> float:
     """Return the product of all mu_i + 1."""
-    return float(np.linalg.det(orbit.passage.jacobian + np.eye(4)))
+    return float(np.linalg.det(orbit.monodromy + np.eye(len(orbit.monodromy))))
 
 
 def _event_tests(left: Point, right: Point) -> list[Test]:
@@ -300,20 +301,20 @@ def _event_tests(left: Point, right: Point) -> list[Test]:
     turning = {
         number
         for point in (left, right)
-        for number, switch in enumerate(stiffness_jumps(point.orbit))
+        for number, switch in enumerate(point.orbit.stiffness_jumps)
         if switch[BEFORE] * switch[AFTER] < 0.0
     }
     tests += [("switching", _velocity_at(number)) for number in sorted(turning)]
     return tests
 
 
-def torus_test(orbit: Orbit) -> float:
+def torus_test(orbit: Shot) -> float:
     """Return the product of all mu_i mu_k - 1, which is 0 where a pair is on the unit circle.
 
     Without damping in the mesh a pair may be there all along the branch; the result is then
     not-a-number.
     """
-    if orbit.passage.damping == 0.0:
+    if orbit.undamped:
         return float("nan")
     return float(np.prod([a * b - 1.0 for a, b in combinations(orbit.multipliers, 2)]).real)
 
@@ -340,16 +341,7 @@ def _velocity_at(number: int) -> Callable[[Point], float]:
     """Return the test of a switch of C(t): the velocity there."""
 
     def velocity(point: Point) -> float:
-        switches = stiffness_jumps(point.orbit)
+        switches = point.orbit.stiffness_jumps
         return float(switches[number, VELOCITY]) if number < len(switches) else float("nan")
 
     return velocity
-
-
-def stiffness_jumps(orbit: Orbit) -> np.ndarray:
-    """Return the events at which C(t) jumps."""
-    events = orbit.passage.events
-    events = events[events[:, KIND] == SWITCH]
-    stiffness = segments_of(orbit.problem)[:, 1]
-    number = events[:, SEGMENT].astype(int)
-    return events[stiffness[number] != stiffness[number - 1]]

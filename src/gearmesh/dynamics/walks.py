@@ -6,11 +6,10 @@ from typing import NamedTuple
 import numpy as np
 from scipy.optimize import brentq
 
-from gearmesh.dynamics.continuation import Curve, Point, at_phase, clear_phase
+from gearmesh.dynamics.continuation import Curve, Point, clear_phase
 from gearmesh.dynamics.special_points import flip_test
 from gearmesh.errors import NoOrbit
 from gearmesh.solvers.reduced.curves import FARTHEST
-from gearmesh.solvers.reduced.period_map import passage
 
 Limits = tuple[tuple[float, float], ...]
 """Range of each parameter."""
@@ -122,13 +121,13 @@ def _walk(piece: Piece, limits: Limits, longest: float) -> Walk:
 
 def _halves(curve: Curve) -> bool:
     """Return whether the curve may end at orbits of half the period."""
-    return curve.periods % 2 == 0 and curve.condition is None
+    return curve.periods % (2 * curve.like.repeats_after) == 0 and curve.condition is None
 
 
 def _half_way(point: Point) -> np.ndarray:
     """Return the distance of an orbit from its initial state after half of its period."""
     orbit = point.orbit
-    return passage(orbit.problem, orbit.state, orbit.periods // 2).end - orbit.state
+    return orbit.shot(orbit.problem, orbit.state, orbit.periods // 2).defect
 
 
 def _flip_at_end(curve: Curve, point: Point) -> list[tuple[str, Point]]:
@@ -138,7 +137,7 @@ def _flip_at_end(curve: Curve, point: Point) -> list[tuple[str, Point]]:
     half = replace(curve, periods=curve.periods // 2)
     middle = point.orbit.state + 0.5 * _half_way(point)
     try:
-        near = half.at(replace(point.orbit, state=middle), point.values)
+        near = half.at(point.orbit.shot(point.orbit.problem, middle, half.periods), point.values)
         test = flip_test(near.orbit)
         for length in _REACH * np.array([0.01, -0.01, 0.1, -0.1, 1.0, -1.0]):
             if flip_test(half.step(near, length).orbit) * test <= 0.0:
@@ -153,13 +152,14 @@ def _between(curve: Curve, point: Point, following: Point, value: float, i: int 
     """Return the point between two others at a value of parameter `i`."""
     share = (value - point.values[i]) / (following.values[i] - point.values[i])
     place = point.place + share * (following.place - point.place)
-    place[4 + i] = value / curve.units[i]
-    return curve.point(place, np.eye(len(place))[4 + i], following.tangent)
+    k = len(place) - len(curve.units)
+    place[k + i] = value / curve.units[i]
+    return curve.point(place, np.eye(len(place))[k + i], following.tangent)
 
 
 def _is_back(curve: Curve, point: Point, following: Point, start: Point) -> bool:
     """Return whether a closed branch passes its first point between two points."""
-    rises = following.tangent[4] * start.tangent[4] > 0.0
+    rises = following.slope * start.slope > 0.0
     if (
         point is start
         or not rises
@@ -167,9 +167,10 @@ def _is_back(curve: Curve, point: Point, following: Point, start: Point) -> bool
     ):
         return False
     here = _between(curve, point, following, start.values[0]).orbit
-    state = at_phase(here, start.orbit.problem.initial_phase).state
-    for _ in range(curve.periods):
+    state = here.at_phase(start.orbit.problem.initial_phase).state
+    for _ in range(curve.periods // here.repeats_after):
         if np.abs(state - start.orbit.state).max() < _SAME:
             return True
-        state = passage(start.orbit.problem, state).end
+        shot = here.shot(start.orbit.problem, state, here.repeats_after)
+        state = state + shot.defect
     return False

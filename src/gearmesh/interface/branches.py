@@ -143,7 +143,7 @@ def follow(orbit: Orbit, parameter: str, limits: Limits) -> Branch:
     """
     family, (value,) = _family(orbit, (parameter,))
     found = branches.follow(
-        orbit.reduced, parameter, _limits(orbit.pair, parameter, limits), family, value
+        orbit.found, parameter, _limits(orbit.pair, parameter, limits), family, value
     )
     return Branch(orbit, found)
 
@@ -230,7 +230,7 @@ def _family(orbit: Orbit, names: tuple[str, ...]) -> tuple[Family, tuple[float, 
         return pair.problem(orbit.variant, nu)
 
     if names == ("nu",):  # no parameter of the pair changes, so it need not be read again
-        return branches.field_family(orbit.reduced.problem, "nu"), values
+        return branches.field_family(orbit.found.problem, "nu"), values
     made: Callable[..., Problem] = problem
     return made, values
 

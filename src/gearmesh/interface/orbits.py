@@ -7,7 +7,8 @@ import numpy as np
 import xarray as xr
 
 from gearmesh.dynamics import general_orbits, orbits
-from gearmesh.dynamics.general_orbits import GeneralOrbit, state_of
+from gearmesh.dynamics.general_orbits import GeneralOrbit
+from gearmesh.dynamics.shots import Shot
 from gearmesh.dynamics.starts import coordinates
 from gearmesh.errors import InputError, NoOrbit
 from gearmesh.interface.lengths import with_lengths
@@ -48,12 +49,12 @@ class Orbit:
     pair: Pair
     variant: Variant
     nu: float
-    found: orbits.Orbit | GeneralOrbit = field(repr=False)
+    found: Shot = field(repr=False)
 
     @property
     def reduced(self) -> orbits.Orbit:
         """The orbit in dimensionless form; raises NoOrbit if it is not of the reduced system."""
-        if isinstance(self.found, GeneralOrbit):
+        if not isinstance(self.found, orbits.Orbit):
             raise NoOrbit("branches: only orbits of the reduced system can be followed")
         return self.found
 
@@ -61,7 +62,7 @@ class Orbit:
     def initial_state(self) -> State:
         """The state at the initial phase, from which a run or another search can start."""
         if isinstance(self.found, GeneralOrbit):
-            return state_of(self.found.problem, self.found.state)
+            return self.found.initial_state
         return State(*self.found.state.tolist())
 
     @property
@@ -196,7 +197,7 @@ def find_orbit(
     elif start is not None:
         begun = with_settings(pair, start).problem(chosen, frequency).initial_state
         begun = begun or state_at(problem)
-    found: orbits.Orbit | GeneralOrbit
+    found: Shot
     if is_reducible(problem):
         found = orbits.find_orbit(problem, periods, None if begun is None else coordinates(begun))
     else:

@@ -85,6 +85,7 @@ def with_settings(pair: Pair, start: Start | None = None, **settings: object) ->
             raise InputError(f"start: found {start!r}; allowed is (y, dy/dtau_s), or a dataset")
         displacement, velocity = (_length(value) for value in start)
         changes |= {"initial_displacement": displacement, "initial_velocity": velocity}
+        changes |= {"initial_coordinates": [], "initial_rates": []}
     return pair.replace(**changes) if changes else pair
 
 

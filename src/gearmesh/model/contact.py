@@ -1,13 +1,18 @@
 """Contact of the flanks: the regimes of the mesh and its elastic force.
 
-The functions take floats or arrays and compile with numba, so that every solver uses them
-unchanged.
+The functions take floats or arrays, so that every solver uses them unchanged.
 """
 
-from gearmesh.model.functions import Number
+from gearmesh.model.functions import Number, power
 
 NORMAL_MESH, CONTACT_LOSS, INVERSE_MESH = 1, 0, -1
 """Regimes of the mesh: y >= 0, -s < y < 0 and y <= -s."""
+
+ONSET = 1e-6
+"""Depth in y_st below which Hertz' force is linear, so that it has a Taylor series at 0.
+
+Above it, the force differs from that of the power by less than its square, relatively.
+"""
 
 
 def regime_of(y: Number, backlash: Number) -> Number:
@@ -27,15 +32,21 @@ def elastic_force(
     backlash: Number,
     quadratic: float = 0.0,
     cubic: float = 0.0,
+    exponent: float = 1.0,
 ) -> Number:
     """Return the elastic force of eq. (1), in the unit of `c` times `y`.
 
     With d = y in normal mesh and d = y + s in inverse mesh it is C (d + c_2 d abs(d) + c_3 d^3);
-    without the `quadratic` c_2 and the `cubic` c_3 this is C (y H1 + (y + s) H2).
+    without the `quadratic` c_2 and the `cubic` c_3 this is C (y H1 + (y + s) H2). An `exponent` p
+    other than 1 puts d (d^2 + o^2)^((p - 1)/2), with o = `ONSET`, in place of d: Hertz' power of d
+    beyond a linear onset.
     """
     depth = y - touching_level(regime, backlash)
     stiffening = (quadratic * regime + cubic * depth) * depth
-    return c * depth * (regime != CONTACT_LOSS) * (1.0 + stiffening)
+    hardening = 1.0
+    if exponent != 1.0:
+        hardening = power(depth * depth + ONSET**2, 0.5 * (exponent - 1.0))
+    return c * depth * (regime != CONTACT_LOSS) * (hardening + stiffening)
 
 
 def dynamic_force(y: Number, c: Number) -> Number:

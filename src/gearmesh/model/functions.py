@@ -1,10 +1,11 @@
 """Functions that the laws use on floats, on truncated Taylor series and on traced numbers alike.
 
-A number of another kind than float brings its own `sin`, `cos` and `sqrt`.
+A number of another kind than float brings its own `sin`, `cos`, `sqrt`, `power` and
+`entry`.
 """
 
 import math
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from typing import Any, NamedTuple
 
 Number = Any
@@ -36,6 +37,18 @@ def cosine(angle: Number) -> Number:
 def square_root(value: Number) -> Number:
     """Return the square root of `value`."""
     return value.sqrt() if hasattr(value, "sqrt") else math.sqrt(value)
+
+
+def power(value: Number, exponent: float) -> Number:
+    """Return a positive `value` to a constant power."""
+    return value.power(exponent) if hasattr(value, "power") else value**exponent
+
+
+def entry(table: Sequence[float], place: Number) -> Number:
+    """Return the entry of `table` at the whole number `place`; the table repeats."""
+    if hasattr(place, "entry"):
+        return place.entry(tuple(table))
+    return table[round(place) % len(table)]
 
 
 def harmonic_sum(harmonics: Iterable[Harmonic], angle: Number) -> Number:

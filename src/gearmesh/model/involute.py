@@ -24,7 +24,9 @@ def involute(angle: float) -> float:
 
 def inverse_involute(value: float) -> float:
     """Return the angle whose involute is `value`, by Newton's method."""
-    angle = min((3.0 * value) ** (1.0 / 3.0), 1.4)
+    # Both are above the angle, for inv(x) > x^3/3 and tan(x) < value + pi/2. The involute is
+    # convex, so Newton's method descends to it.
+    angle = min((3.0 * value) ** (1.0 / 3.0), math.atan(value + 0.5 * math.pi))
     for _ in range(50):
         step = (involute(angle) - value) / math.tan(angle) ** 2
         angle -= step

@@ -25,25 +25,34 @@ def mesh_stiffness(problem: Problem, phase: Number, segment: float | None = None
     periods if single teeth have factors.
     """
     segment = phase if segment is None else segment
-    passed = since(phase, segment)
     terms = problem.terms
     if not (terms.tooth_pair_stiffness or terms.tooth_factors):
-        return _whole(problem, phase, segment, passed)
+        return _whole(problem, phase, segment, since(phase, segment))
+    return sum(pair_stiffnesses(problem, phase, segment))
+
+
+def pair_stiffnesses(problem: Problem, phase: Number, segment: float) -> list[Number]:
+    """Return the stiffness of each pair of teeth in contact, in C_s; they add up to C(t).
+
+    Pairs share C(t) evenly where it is stated for the mesh.
+    """
+    passed = since(phase, segment)
+    terms = problem.terms
     pairs = stiffness.touching_pairs(segment, problem.contact_ratio)
     if not terms.tooth_pair_stiffness:
         shared = _whole(problem, phase, segment, passed)
-        return sum(_factor(problem, pair.number) / len(pairs) for pair in pairs) * shared
+        return [_factor(problem, pair.number) / len(pairs) * shared for pair in pairs]
     points = len(terms.tooth_pair_stiffness)
     ends = stiffness.path_places(problem.contact_ratio, points)
     knots = [
         (end - stiffness.PITCH_PHASE, value)
         for end, value in zip(ends, terms.tooth_pair_stiffness, strict=True)
     ]
-    total = 0.0
+    found = []
     for pair in pairs:
         value, slope = stiffness.line_through(knots, pair.place)
-        total += _factor(problem, pair.number) * (value + slope * passed)
-    return total
+        found.append(_factor(problem, pair.number) * (value + slope * passed))
+    return found
 
 
 def _whole(problem: Problem, phase: Number, segment: float, passed: Number) -> Number:
@@ -82,6 +91,6 @@ def _factor(problem: Problem, number: int) -> float:
 
 
 def backlash(problem: Problem, time: Number) -> Number:
-    """Return s(t) / y_st."""
+    """Return s(t) / y_st, without what the centres of the wheels add."""
     harmonics = problem.terms.backlash_harmonics
     return problem.backlash + harmonic_sum(harmonics, problem.nu * time)

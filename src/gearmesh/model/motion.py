@@ -9,14 +9,15 @@ numbers that record what is done with them: the general solver derives its recur
 statement (`gearmesh.solvers.full.tape`), and tests hold those of the reduced solver against it.
 """
 
+import math
 from collections.abc import Sequence
-from dataclasses import dataclass
-from typing import NamedTuple
+from dataclasses import replace
 
 import numpy as np
 
-from gearmesh.model.contact import CONTACT_LOSS, elastic_force, regime_of
+from gearmesh.model.contact import CONTACT_LOSS, NORMAL_MESH, elastic_force, regime_of
 from gearmesh.model.damping import damping_force
+from gearmesh.model.flanks import distances
 from gearmesh.model.friction import (
     arms,
     follows_run_out,
@@ -33,7 +34,8 @@ from gearmesh.model.functions import (
     sine,
     square_root,
 )
-from gearmesh.model.mesh import backlash, mesh_phase, mesh_stiffness, since
+from gearmesh.model.mesh import backlash, mesh_phase, mesh_stiffness, pair_stiffnesses, since
+from gearmesh.model.mode import Forces, Mode
 from gearmesh.model.problem import Problem, State
 from gearmesh.model.segments import pitch_offset_of
 
@@ -42,60 +44,6 @@ Six = Sequence[Number] | np.ndarray
 
 ROTATION_3, ROTATION_2, Y_3, Y_2, Z_3, Z_2 = range(6)
 """Indices of the coordinates R_b3 phi_3, R_b2 phi_2, y_3, y_2, z_3 and z_2."""
-
-
-@dataclass(frozen=True, slots=True)
-class Mode:
-    """The branch of every law that jumps; between jumps the equations of motion are smooth.
-
-    Attributes
-    ----------
-    regime : int
-        `NORMAL_MESH`, `CONTACT_LOSS` or `INVERSE_MESH`.
-    segment : float
-        Any mesh phase between the same two jumps of C(t) and gamma(t).
-    run_out_sign : int
-        First sign of eq. (6).
-    slip_sign : int
-        Second sign of eq. (6), that of z_3' - z_2'; 0 while the flanks stick, with z_3' = z_2'.
-    parted : bool
-        Whether the contact force is 0 although the flanks overlap (`GeneralTerms.non_adhesive`).
-    """
-
-    regime: int
-    segment: float
-    run_out_sign: Number = 1
-    slip_sign: Number = 1
-    parted: bool = False
-
-
-class Forces(NamedTuple):
-    """Forces in the mesh, in F_st: all that the wheels exert on each other.
-
-    Attributes
-    ----------
-    stiffness : float
-        C / C_s.
-    elastic : float
-        Elastic force, as the friction takes it.
-    contact : float
-        Elastic and damping force of the flanks in contact, and damping of the lubricant in contact
-        loss; positive where it presses the flanks of normal mesh.
-    normal : float
-        What of it acts: all, or 0 while the flanks are parted.
-    friction : float
-        F_T on wheel 3.
-    moment_3, moment_2 : float
-        Additional moments of friction over R_bi.
-    """
-
-    stiffness: Number
-    elastic: Number
-    contact: Number
-    normal: Number
-    friction: Number
-    moment_3: Number
-    moment_2: Number
 
 
 def angles(problem: Problem, time: Number, q: Six) -> tuple[Number, Number]:
@@ -155,6 +103,26 @@ def relative_motion(problem: Problem, time: Number, q: Six, v: Six) -> tuple[Num
     return displacement(problem, time, q), rate
 
 
+def gap(problem: Problem, time: Number, q: Six) -> Number:
+    """Return the backlash s(t) in y_st.
+
+    If it follows the centres of the wheels, it grows by 2 sin(alpha) times what their distance
+    grows by. The line of centres has the components sin(alpha) along y and cos(alpha) along z. The
+    centres move with the bodies and, where wheels are eccentric, about them.
+    """
+    s = backlash(problem, time)
+    if not problem.terms.backlash_follows_centres:
+        return s
+    along, across = q[Y_2] - q[Y_3], q[Z_2] - q[Z_3]
+    if problem.has_run_out:
+        angle_3, angle_2 = angles(problem, time, q)
+        e_3, e_2 = problem.eccentricity_3, problem.eccentricity_2
+        along += e_2 * sine(angle_2) - e_3 * sine(angle_3)
+        across += e_2 * cosine(angle_2) - e_3 * cosine(angle_3)
+    rise, run = math.sin(problem.pressure_angle), math.cos(problem.pressure_angle)
+    return s + 2.0 * rise * (rise * along + run * across)
+
+
 def run_out_argument(problem: Problem, time: Number, q: Six, v: Six) -> Number:
     """Return the bracket of eq. (6), e_3 Phi_3' sin Phi_3 - e_2 Phi_2' sin(Delta - Phi_2)."""
     wheel_3, wheel_2 = problem.both_wheels
@@ -176,16 +144,23 @@ def run_out_integral(problem: Problem, time: Number, q: Six) -> Number:
 def mode_of(problem: Problem, time: float, q: Six, v: Six) -> Mode:
     """Return the branches that act in a state; where a sign has argument 0 it is +1."""
     y, rate = relative_motion(problem, time, q, v)
-    regime = int(regime_of(y, backlash(problem, time)))
-    mode = Mode(regime, mesh_phase(problem, time))
+    regime = int(regime_of(y, gap(problem, time, q)))
+    phase = mesh_phase(problem, time)
+    pressing: tuple[float, ...] = ()
+    if problem.terms.pairs_touch_singly:
+        pressing = tuple(float(y >= distance) for distance in distances(problem, phase, phase))
+        regime = NORMAL_MESH if any(pressing) else min(regime, CONTACT_LOSS)
+    mode = Mode(regime, phase, pressing=pressing)
     if follows_run_out(problem.eccentricity_3, problem.eccentricity_2):
         bracket = run_out_argument(problem, time, q, v)
-        mode = Mode(
-            regime, mode.segment, 1 if bracket >= 0.0 else -1, 1 if v[Z_3] >= v[Z_2] else -1
+        mode = replace(
+            mode,
+            run_out_sign=1 if bracket >= 0.0 else -1,
+            slip_sign=1 if v[Z_3] >= v[Z_2] else -1,
         )
     if problem.terms.non_adhesive and regime != CONTACT_LOSS:
         pulls = regime * forces(problem, time, q, v, y, rate, mode).contact < 0.0
-        mode = Mode(regime, mode.segment, mode.run_out_sign, mode.slip_sign, pulls)
+        mode = replace(mode, parted=pulls)
     return mode
 
 
@@ -232,9 +207,18 @@ def forces(
 ) -> Forces:
     """Return the forces in the mesh at the relative motion `y` and its `rate`."""
     terms = problem.terms
-    c = mesh_stiffness(problem, mesh_phase(problem, time), mode.segment)
-    gap = backlash(problem, time)
-    elastic = elastic_force(y, c, mode.regime, gap, terms.restoring_2, terms.restoring_3)
+    phase = mesh_phase(problem, time)
+    c = mesh_stiffness(problem, phase, mode.segment)
+    law = terms.restoring_2, terms.restoring_3, terms.restoring_power
+    if terms.pairs_touch_singly and mode.regime == NORMAL_MESH:
+        stiffnesses = pair_stiffnesses(problem, phase, mode.segment)
+        starts = distances(problem, phase, mode.segment)
+        elastic = sum(
+            presses * elastic_force(y - start, stiffness, NORMAL_MESH, 0.0, *law)
+            for presses, start, stiffness in zip(mode.pressing, starts, stiffnesses, strict=True)
+        )
+    else:
+        elastic = elastic_force(y, c, mode.regime, gap(problem, time, q), *law)
     if mode.regime == CONTACT_LOSS:
         damping = damping_force(rate, problem.lubricant)
     else:
@@ -357,6 +341,13 @@ def state_at(problem: Problem, y: float = 1.0, v: float = 0.0) -> State:
     b = -sum(_compliances(problem))
     # y is the sum of both motions, as everywhere in the reduced system.
     return State((y - b) + b, v, b, 0.0, coordinates=(*q.tolist(), *rates.tolist()))
+
+
+def state_of(problem: Problem, q: np.ndarray, v: np.ndarray) -> State:
+    """Return the state at t = 0 with these coordinates and rates, each of shape (6,)."""
+    y, rate = relative_motion(problem, problem.start_time, q, v)
+    b, b_rate = (float(x[Y_3] - x[Y_2]) for x in (q, v))
+    return State(float(y), float(rate), b, b_rate, coordinates=(*q.tolist(), *v.tolist()))
 
 
 def start(problem: Problem) -> tuple[np.ndarray, np.ndarray]:

@@ -81,12 +81,23 @@ class GeneralTerms:
         Factors of single teeth. A pair of teeth takes the product of its two.
     restoring_2, restoring_3 : float
         The elastic force is C (d + c_2 d abs(d) + c_3 d^3) at the depth d.
+    restoring_power : float
+        The power p of Hertz: d abs(d)^(p - 1) stands in place of d in the elastic force.
     non_adhesive : bool
         Whether the contact force never pulls: while it would, it is 0, and so is the friction.
     damping_power : float
         The damping of the material is multiplied by (C / C_s) to this power.
     backlash_harmonics : tuple of Harmonic
         s(t) - s, in y_st.
+    backlash_follows_centres : bool
+        Whether the backlash changes with the distance of the wheels' centres.
+    pitch_errors_3, pitch_errors_2 : tuple of float
+        How far the flank of each tooth of wheels 3 and 2 stands out towards its mate, in y_st;
+        tooth 0 first, as in `ToothFactor`.
+    tip_relief : tuple of two float
+        How far the flanks of wheels 3 and 2 stand back at their tips, in y_st.
+    tip_relief_length : tuple of two float
+        Lengths of both reliefs along the path of contact, in base pitches.
     """
 
     torque_harmonics_3: tuple[Harmonic, ...] = ()
@@ -98,9 +109,25 @@ class GeneralTerms:
     tooth_factors: tuple[ToothFactor, ...] = ()
     restoring_2: float = 0.0
     restoring_3: float = 0.0
+    restoring_power: float = 1.0
     non_adhesive: bool = False
     damping_power: float = 0.0
     backlash_harmonics: tuple[Harmonic, ...] = ()
+    backlash_follows_centres: bool = False
+    pitch_errors_3: tuple[float, ...] = ()
+    pitch_errors_2: tuple[float, ...] = ()
+    tip_relief: tuple[float, float] = (0.0, 0.0)
+    tip_relief_length: tuple[float, float] = (0.0, 0.0)
+
+    @property
+    def backlash_varies(self) -> bool:
+        """Whether the backlash changes with time."""
+        return bool(self.backlash_harmonics) or self.backlash_follows_centres
+
+    @property
+    def pairs_touch_singly(self) -> bool:
+        """Whether flanks deviate, so that each pair of teeth touches and parts by itself."""
+        return bool(self.pitch_errors_3 or self.pitch_errors_2 or any(self.tip_relief))
 
 
 @dataclass(frozen=True, slots=True)

@@ -4,6 +4,7 @@ from functools import lru_cache
 from itertools import pairwise
 from typing import NamedTuple
 
+from gearmesh.model.flanks import relief_places
 from gearmesh.model.friction import Pair, pairs_in_contact, pitch_offset
 from gearmesh.model.problem import Problem
 from gearmesh.model.stiffness import PITCH_PHASE, path_places, switch_phases
@@ -47,16 +48,18 @@ def segments(problem: Problem) -> tuple[Segment, ...]:
     """Cut a mesh period of `problem` at the jumps and kinks of C(t) and the jumps of gamma(t).
 
     The rectangular wave and friction jump at the switches of C(t), as do factors of single teeth;
-    friction jumps at the pitch point too. Tables have kinks.
+    friction jumps at the pitch point too. Where pairs of teeth touch singly, others do so from each
+    switch on. Tables and tip relief have kinks.
     """
     rubs = problem.friction_coefficient != 0.0
     terms = problem.terms
     smooth = problem.stiffness_harmonics or terms.stiffness_fourier or terms.stiffness_table
-    switches = rubs or not smooth or bool(terms.tooth_factors)
+    switches = rubs or not smooth or bool(terms.tooth_factors) or terms.pairs_touch_singly
     offset = pitch_offset_of(problem)
     places = [*(switch_phases(problem.contact_ratio) if switches else ())]
     places += [PITCH_PHASE + offset] * rubs
     places += [phase for phase, _ in terms.stiffness_table]
+    places += relief_places(problem)
     places += path_places(problem.contact_ratio, len(terms.tooth_pair_stiffness))
     return _cut(problem.contact_ratio, problem.initial_phase, offset, tuple(places))
 

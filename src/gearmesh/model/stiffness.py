@@ -62,6 +62,24 @@ def path_places(contact_ratio: float, points: int) -> list[float]:
     return [start + contact_ratio * i / (points - 1) for i in range(points)]
 
 
+def extremes_of_pairs(pair: Sequence[float], contact_ratio: float) -> tuple[float, float]:
+    """Return the least and the greatest stiffness of the mesh whose pairs each have `pair`.
+
+    `pair` holds values at equal distances along the path of a pair, linear in between.
+    """
+    ends = path_places(contact_ratio, len(pair))
+    knots = [(end - PITCH_PHASE, value) for end, value in zip(ends, pair, strict=True)]
+    sums = []
+    for low, high in pairwise([0.0, *sorted(end % 1.0 for end in ends), 1.0]):
+        if low < high:
+            middle = 0.5 * (low + high)
+            touching = touching_pairs(middle, contact_ratio)
+            lines = [line_through(knots, one.place) for one in touching]
+            value, slope = (sum(column) for column in zip(*lines, strict=True))
+            sums += [value - slope * (middle - low), value + slope * (high - middle)]
+    return min(sums), max(sums)
+
+
 def in_double_contact(phase: float | np.ndarray, contact_ratio: float) -> np.ndarray:
     """Return whether two pairs of teeth carry at `phase`, a float or an array."""
     return np.abs(phase - np.round(phase)) < 0.5 * duty(contact_ratio)

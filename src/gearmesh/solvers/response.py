@@ -11,6 +11,7 @@ from typing import Any
 
 import numpy as np
 
+from gearmesh.model.contact import CONTACT_LOSS
 from gearmesh.model.problem import Problem, State
 
 OK, STEP_LIMIT, DIVERGED, FRICTION_UNDEFINED = range(4)
@@ -59,6 +60,9 @@ class Samples:
     F_st, `regime` as in `gearmesh.model.contact`. `force_normal` is the elastic and the damping
     force, `transmission_error` the sum of R_b phi of both wheels, and `force_bearing_3` and
     `force_bearing_2` what the bodies exert on their bearings along the mesh line.
+
+    `extremes` has the least and greatest `force_normal`, `transmission_error`, `force_bearing_3`
+    and `force_bearing_2`, shape (4, 2), where the solver has located them between the samples.
     """
 
     time: np.ndarray
@@ -74,6 +78,7 @@ class Samples:
     force_bearing_2: np.ndarray
     transmission_error: np.ndarray
     regime: np.ndarray
+    extremes: np.ndarray | None = None
 
 
 def _nothing() -> np.ndarray:
@@ -108,10 +113,8 @@ class Response:
         Shares of the kept time with -s < y < 0 and with y <= -s.
     n_contact_losses : int or None
         Number of times that contact is lost in the kept revolutions.
-    least_contact_force : float
-        Least force that presses touching flanks in the kept revolutions, in F_st; negative if they
-        pull, infinity if they never touch. The reduced solver measures it on the samples, and
-        leaves it not a number without them.
+    located_contact_force : float
+        The least contact force, if the solver has located it; see `least_contact_force`.
     turning_points_per_period : float
         Mean number of extrema in a kept mesh period.
     y_max_error, y_min_error : float
@@ -145,7 +148,7 @@ class Response:
     contact_loss_fraction: float = np.nan
     inverse_mesh_fraction: float = np.nan
     n_contact_losses: int | None = None
-    least_contact_force: float = np.nan
+    located_contact_force: float = np.nan
     turning_points_per_period: float = np.nan
     y_max_error: float = np.nan
     y_min_error: float = np.nan
@@ -154,12 +157,18 @@ class Response:
     final_state: State | None = None
     samples: Samples | None = None
 
+    @property
+    def least_contact_force(self) -> float:
+        """Least force that presses touching flanks in the kept revolutions, in F_st.
 
-def least_of(samples: Samples) -> float:
-    """Return the least force that presses touching flanks at the samples."""
-    touching = samples.regime != 0
-    pressing = samples.regime[touching] * samples.force_normal[touching]
-    return float(np.min(pressing, initial=np.inf))
+        It is negative if they pull, and infinity if they never touch. The general solver locates
+        it. That of the reduced solver is measured on the samples, and not a number without them.
+        """
+        if self.samples is None or not np.isnan(self.located_contact_force):
+            return self.located_contact_force
+        touching = self.samples.regime != CONTACT_LOSS
+        pressing = self.samples.regime[touching] * self.samples.force_normal[touching]
+        return float(np.min(pressing, initial=np.inf))
 
 
 @dataclass(slots=True)
@@ -180,7 +189,7 @@ def assemble(
     tolerance: float,
     samples: Any,
     rotation_drift: float = np.nan,
-    least_contact_force: float = np.nan,
+    located_contact_force: float = np.nan,
 ) -> Response:
     """Return the response that a compiled solver has measured.
 
@@ -198,8 +207,8 @@ def assemble(
     samples : Samples or None
     rotation_drift : float
         In rad.
-    least_contact_force : float
-        In F_st; if it is not a number, it is measured on the samples.
+    located_contact_force : float
+        In F_st; not a number if the solver does not locate it.
     """
     response = Response(
         STATUSES[summary["status"]], problem.period, problem.nu, int(summary["steps"])
@@ -212,9 +221,7 @@ def assemble(
     response.rotation_drift = rotation_drift
     if problem.kept_periods:
         _measure(response, problem, summary, extrema, samples)
-        response.least_contact_force = least_contact_force
-        if samples is not None and np.isnan(least_contact_force):
-            response.least_contact_force = least_of(samples)
+        response.located_contact_force = located_contact_force
     if companion is not None:
         _estimate(response, summary, strobes, companion, SENSITIVE * tolerance)
     return response

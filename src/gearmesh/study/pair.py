@@ -25,8 +25,15 @@ from gearmesh.study.alternatives import (
 )
 from gearmesh.study.parameters import SETTINGS, Parameters
 from gearmesh.study.problem import problem_of
-from gearmesh.study.provenance import DEFAULT, SETTING, STATED, Statement
-from gearmesh.study.relative import MM_PER_M, mean_stiffness, resolved
+from gearmesh.study.provenance import DEFAULT, DERIVED, SETTING, STATED, Statement
+from gearmesh.study.relative import (
+    LEVELS,
+    MM_PER_M,
+    TABLES,
+    mean_stiffness,
+    resolved,
+    with_levels,
+)
 from gearmesh.study.schema import of_wheels, read_declared, validate
 
 
@@ -70,7 +77,7 @@ class Pair(Parameters):
     @model_validator(mode="before")
     @classmethod
     def _resolve_values(cls, data: object) -> object:
-        return resolved(with_stored(data)) if isinstance(data, dict) else data
+        return resolved(with_stored(with_levels(data))) if isinstance(data, dict) else data
 
     @classmethod
     def from_statements(
@@ -146,6 +153,9 @@ class Pair(Parameters):
             if name in statements and statements[name].value is not None:
                 names[names.index(alternative.replaces[0])] = name
                 names = [other for other in names if other not in alternative.replaces]
+        if any(getattr(self, table) for table in TABLES):
+            follows = Statement(None, DERIVED, "greatest, and least over greatest, of the table")
+            statements = {**dict.fromkeys(LEVELS, follows), **statements}
         missing = Statement(None, DEFAULT)
         return [self._listed(name, statements.get(name, missing)) for name in names]
 

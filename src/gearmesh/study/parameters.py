@@ -5,11 +5,13 @@ from typing import Literal, Self
 
 from pydantic import model_validator
 
+from gearmesh.study.flanks import check_flanks
 from gearmesh.study.harmonics import BacklashHarmonic, ToothStiffness, TorqueHarmonic
 from gearmesh.study.schema import Section, quantity
 
 SETTINGS = frozenset(
     {"initial_phase", "initial_displacement", "initial_velocity"}
+    | {"initial_coordinates", "initial_rates"}
     | {"revolutions", "kept_revolutions", "samples_per_period", "tolerance"}
 )
 """Parameters of a run. They state nothing about the gear."""
@@ -157,6 +159,10 @@ class Parameters(Section):
     restoring_3: float = quantity(
         "1", "c_3", "cubic part of the elastic force, in 1/y_st²", -10.0, 10.0, default=0.0
     )
+    restoring_power: float = quantity(
+        *("1", "p", "power of the depth in the elastic force, as Hertz' 10/9 or 3/2", 1.0, 2.0),
+        default=1.0,
+    )
     non_adhesive: bool = quantity(
         *("1", "N ≥ 0", "whether the contact force never pulls", 0.0, 1.0),
         structured=True,
@@ -172,6 +178,26 @@ class Parameters(Section):
         structured=True,
         default=(),
     )
+    backlash_follows_centres: bool = quantity(
+        *("1", "s(y, z)", "whether s follows the distance of the wheels' centres", 0.0, 1.0),
+        structured=True,
+        default=False,
+    )
+    pitch_errors: tuple[tuple[float, ...], ...] = quantity(
+        *("mm", "F_p", "how far each tooth stands out, for the teeth of wheels 3 and 2"),
+        *(-10.0, 10.0),
+        default=(),
+    )
+    tip_relief: tuple[float, float] = quantity(
+        *("mm", "C_a", "how far the flanks of the wheels stand back at the tip", 0.0, 10.0),
+        of_wheels=True,
+        default=(0.0, 0.0),
+    )
+    tip_relief_length: tuple[float, float] = quantity(
+        *("mm", "L_a", "length of the tip relief along the path of contact", 0.0, 1e4),
+        of_wheels=True,
+        default=(0.0, 0.0),
+    )
     initial_phase: float = quantity(
         *("1", "p_0", "mesh phase at which a run starts; 0: middle of the C_max pulse", 0.0, 1.0),
         default=0.0,
@@ -182,6 +208,15 @@ class Parameters(Section):
     )
     initial_velocity: float = quantity(
         "mm", "y'_0", "initial dy/dτ_s, τ_s = Ω_s t", -1e3, 1e3, default=0.0
+    )
+    initial_coordinates: tuple[float, ...] = quantity(
+        *("mm", "q_0", "initial R_b3 φ_3, R_b2 φ_2, y_3, y_2, z_3, z_2; as y_0 if open"),
+        *(-1e3, 1e3),
+        default=(),
+    )
+    initial_rates: tuple[float, ...] = quantity(
+        *("mm", "q'_0", "initial dq/dτ_s of the same six, τ_s = Ω_s t; 0 if open", -1e3, 1e3),
+        default=(),
     )
     revolutions: int = quantity("1", "n_r", "revolutions that are run", 1, 10_000, default=5)
     kept_revolutions: int = quantity(
@@ -211,6 +246,24 @@ class Parameters(Section):
                 f"contact_ratio: found {self.contact_ratio:g}; allowed are 1 to 2, and up to 3 "
                 "with tooth_pair_stiffness: eqs. (4) and (5) hold no further"
             )
+        return self
+
+    @model_validator(mode="after")
+    def _has_flanks_that_fit(self) -> Self:
+        check_flanks(self)
+        return self
+
+    @model_validator(mode="after")
+    def _starts_from_one_state(self) -> Self:
+        for name in ("initial_coordinates", "initial_rates"):
+            values = getattr(self, name)
+            if len(values) not in (0, 6):
+                raise ValueError(f"{name}: found {len(values)} values; allowed are six")
+            if values and (self.initial_displacement is not None or self.initial_velocity):
+                raise ValueError(
+                    f"{name}: stated beside initial_displacement or initial_velocity; allowed are "
+                    "the six coordinates, or y and its rate"
+                )
         return self
 
     @model_validator(mode="after")

@@ -1,11 +1,15 @@
 """The dimensionless problem that a pair states for one variant and mesh frequency."""
 
 from dataclasses import replace
+from functools import lru_cache
 from typing import TYPE_CHECKING, Any
 
-from gearmesh.model.motion import state_at
+import numpy as np
+
+from gearmesh.model.motion import state_at, state_of, static_equilibrium
 from gearmesh.model.problem import GeneralTerms, Problem, ToothFactor, Wheel
 from gearmesh.model.variants import Variant
+from gearmesh.study.flanks import flanks_of
 from gearmesh.study.relative import MM_PER_M
 from gearmesh.study.schema import of_wheels
 
@@ -15,11 +19,29 @@ if TYPE_CHECKING:
 
 def problem_of(pair: "Pair", variant: Variant, nu: float) -> Problem:
     """State one run in static deflections, 1/Ω_s and static forces (`Pair.problem`)."""
+    problem = replace(_at_resonance(pair, variant), nu=nu)
+    y_st = pair.static_deflection
+    if pair.initial_coordinates or pair.initial_rates:
+        q, v = static_equilibrium(problem)
+        if pair.initial_coordinates:
+            q = np.array(pair.initial_coordinates) / y_st
+        if pair.initial_rates:
+            v = np.array(pair.initial_rates) / y_st
+        return replace(problem, initial_state=state_of(problem, q, v))
+    if pair.initial_displacement is None and pair.initial_velocity == 0.0:
+        return problem  # at rest in static equilibrium
+    y = 1.0 if pair.initial_displacement is None else pair.initial_displacement / y_st
+    return replace(problem, initial_state=state_at(problem, y, pair.initial_velocity / y_st))
+
+
+@lru_cache(maxsize=64)
+def _at_resonance(pair: "Pair", variant: Variant) -> Problem:
+    """State the run at ν_s = 1 from static equilibrium; all else is the same at any frequency."""
     y_st, c_s = pair.static_deflection, pair.stiffness_mean
     eccentricity_3, eccentricity_2 = pair.eccentricity
     wheel_3, wheel_2 = (_wheel(pair, place) for place in (0, 1))
-    problem = Problem(
-        nu=nu,
+    return Problem(
+        nu=1.0,
         contact_ratio=pair.contact_ratio,
         stiffness_max=pair.mesh_stiffness_max / c_s,
         stiffness_min=pair.stiffness_min / c_s,
@@ -48,10 +70,6 @@ def problem_of(pair: "Pair", variant: Variant, nu: float) -> Problem:
         wheels=None if _alike(wheel_3, wheel_2) else (wheel_3, wheel_2),
         terms=_general_terms(pair),
     )
-    if pair.initial_displacement is None and pair.initial_velocity == 0.0:
-        return problem  # at rest in static equilibrium
-    y = 1.0 if pair.initial_displacement is None else pair.initial_displacement / y_st
-    return replace(problem, initial_state=state_at(problem, y, pair.initial_velocity / y_st))
 
 
 def _wheel(pair: "Pair", place: int) -> Wheel:
@@ -106,11 +124,14 @@ def _general_terms(pair: "Pair") -> GeneralTerms:
         ),
         restoring_2=pair.restoring_2,
         restoring_3=pair.restoring_3,
+        restoring_power=pair.restoring_power,
         non_adhesive=pair.non_adhesive,
         damping_power={"none": 0.0, "sqrt": 0.5, "linear": 1.0}[pair.damping_follows_stiffness],
         backlash_harmonics=tuple(
             wave.harmonic(teeth, pair.static_deflection) for wave in pair.backlash_harmonics
         ),
+        backlash_follows_centres=pair.backlash_follows_centres,
+        **flanks_of(pair),
     )
 
 

@@ -10,7 +10,7 @@ from gearmesh.study.schema import read_declared, shown
 
 MM_PER_M = 1000.0
 
-_TABLES = ("stiffness_table", "tooth_pair_stiffness")
+TABLES = ("stiffness_table", "tooth_pair_stiffness")
 
 
 def resolved(data: dict[str, Any]) -> dict[str, Any]:
@@ -22,6 +22,32 @@ def resolved(data: dict[str, Any]) -> dict[str, Any]:
         for name in relative:
             found[name] = units.scaled(found[name], scale, size, unit)
     return found
+
+
+LEVELS = ("mesh_stiffness_max", "stiffness_ratio")
+_LEAST_RATIO = 1e-3
+
+
+def with_levels(data: dict[str, Any]) -> dict[str, Any]:
+    """Add C_max and κ, if they are missing, where a table states the stiffness.
+
+    They are the greatest value of C(t), and the least over it. The motion does not depend on them.
+    """
+    stated = [name for name in TABLES if data.get(name)]
+    missing = [name for name in LEVELS if data.get(name) is None]
+    if not stated or not missing:
+        return data
+    declared = Parameters.declarations()
+    try:
+        values: Any = read_declared(data[stated[0]], declared[stated[0]])
+        least, greatest = min(values), max(values)
+        if stated[0] == "tooth_pair_stiffness":
+            contact_ratio: Any = read_declared(data["contact_ratio"], declared["contact_ratio"])
+            least, greatest = stiffness.extremes_of_pairs(values, contact_ratio)
+        levels = (f"{greatest!r} N/mm", max(least / greatest, _LEAST_RATIO))
+    except (KeyError, TypeError, ValueError, ZeroDivisionError):
+        return data  # the mistake is reported where the table is read
+    return {**data, **{n: v for n, v in zip(LEVELS, levels, strict=True) if n in missing}}
 
 
 def _scale(scale: str, data: Mapping[str, Any], user: str) -> float:
@@ -57,7 +83,7 @@ def mean_stiffness(
 def stated_mean_stiffness(read: Callable[[str], Any]) -> float:
     """Return C_s in N/mm; `read` returns a parameter by its name, in its unit."""
     names = ("contact_ratio", "mesh_stiffness_max", "stiffness_ratio")
-    return mean_stiffness(*(read(name) for name in (*names, *_TABLES)))
+    return mean_stiffness(*(read(name) for name in (*names, *TABLES)))
 
 
 def read_parameter(
@@ -83,7 +109,7 @@ def read_parameter(
     ValueError
         If it is missing or wrong; the message begins with its name.
     """
-    if name in _TABLES and not data.get(name):
+    if name in TABLES and not data.get(name):
         return ()
     if data.get(name) is None:
         raise ValueError(f"{name}: missing; {reason}")
@@ -93,7 +119,7 @@ def read_parameter(
         raise ValueError(f"{name}: found {shown(data[name])}; {error}") from None
     if (
         isinstance(value, tuple)
-        and name not in _TABLES
+        and name not in TABLES
         and not (declared[name]["of_wheels"] or declared[name]["may_differ"])
     ):
         raise ValueError(f"{name}: found {shown(data[name])}; allowed is a single value")

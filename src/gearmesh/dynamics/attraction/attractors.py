@@ -7,7 +7,6 @@ from functools import cached_property
 
 import numpy as np
 
-from gearmesh.dynamics.continuation import at_phase
 from gearmesh.dynamics.orbits import Orbit, correct
 from gearmesh.errors import NoOrbit
 from gearmesh.model.problem import Problem
@@ -81,7 +80,7 @@ class Attractor:
     def _strobe(self) -> np.ndarray:
         if self.orbit is None:
             return np.full(4, math.nan)
-        moved = at_phase(self.orbit, 0.0)
+        moved = self.orbit.at_phase(0.0)
         points = [moved.state]
         for _ in range(moved.periods - 1):
             points.append(passage(moved.problem, points[-1]).end)

@@ -15,7 +15,6 @@ import numpy as np
 from scipy.linalg import solve_discrete_lyapunov
 
 from gearmesh.dynamics.attraction.attractors import WEIGHTS
-from gearmesh.dynamics.continuation import at_phase
 from gearmesh.dynamics.orbits import Orbit
 from gearmesh.solvers.reduced.ensembles import advance, laws_of
 from gearmesh.solvers.reduced.period_map import passage
@@ -64,7 +63,7 @@ def region_of(orbit: Orbit, phase: float) -> Region:
 
     Its size is 0 if the orbit attracts too slowly to be tried.
     """
-    orbit = at_phase(orbit, phase)
+    orbit = orbit.at_phase(phase)
     rho = math.sqrt(abs(orbit.multipliers[0]))
     points, jacobians = [orbit.state], []
     for _ in range(orbit.periods):

@@ -26,9 +26,10 @@ _LUBRICANT, _MATERIAL = "c-lubricant", "c-material"
 TOUR = (
     Stop(
         "Below the jump",
-        "c-• at ν_s = 0.75. The teeth stay together: y is positive but for moments. In this "
-        "variant only the oil damps, and it acts only while the teeth are apart. So nothing takes "
-        "energy from the motion, the run rings on after its start, and its extrema form a cloud.",
+        "c-• at ν_s = 0.75. The teeth touch nearly all the time: y is negative for 3 % of it. In "
+        "this variant only the oil damps, and it acts only while the teeth are apart. So hardly "
+        "anything takes energy from the motion, the run rings on after its start, and its extrema "
+        "form a cloud.",
         view(_LUBRICANT, 0.75),
     ),
     Stop(

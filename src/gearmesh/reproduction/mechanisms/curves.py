@@ -8,6 +8,7 @@ import numpy as np
 import xarray as xr
 
 from gearmesh.dynamics import branches, orbits, special_curves
+from gearmesh.dynamics.shots import Shot
 from gearmesh.dynamics.special_points import SpecialPoint
 from gearmesh.errors import NoOrbit
 from gearmesh.model.problem import Problem
@@ -151,7 +152,7 @@ def _family(pair: Pair, wanted: Wanted) -> Callable[..., Problem]:
 def _columns(
     pair: Pair,
     values: Sequence[tuple[float, ...]],
-    found: Sequence[orbits.Orbit],
+    found: Sequence[Shot],
     cusp: Sequence[int],
     wanted: Wanted | None,
     number: int,

@@ -1,14 +1,15 @@
 """Which coordinates a run needs, and in which mesh periods it differs.
 
 Without run-out the rotations act through their sum alone, and nothing that moves across the mesh
-line acts back. Two or three coordinates then determine y: R_b3 phi_3 + R_b2 phi_2, and y_3 - y_2
-for equal bodies on equal bearings, or y_3 and y_2.
+line acts back, unless the backlash follows the wheels' centres. Two or three coordinates then
+determine y: R_b3 phi_3 + R_b2 phi_2, and y_3 - y_2 for equal bodies on equal bearings, or y_3 and
+y_2.
 """
 
 import numpy as np
 
 from gearmesh.model.friction import follows_run_out
-from gearmesh.model.motion import ROTATION_2, ROTATION_3, Y_2, Y_3
+from gearmesh.model.motion import ROTATION_2, ROTATION_3, Y_2, Y_3, Z_2, Z_3
 from gearmesh.model.problem import Problem
 from gearmesh.model.segments import segments
 from gearmesh.model.stiffness import touching_pairs
@@ -38,7 +39,9 @@ def embedding(problem: Problem) -> np.ndarray:
         (wheel.body_mass, wheel.bearing_stiffness[0], wheel.bearing_damping_ratio[0])
         for wheel in (wheel_3, wheel_2)
     ]
-    if bodies[0] == bodies[1]:
+    if problem.terms.backlash_follows_centres:
+        columns += [{Y_3: 1.0}, {Y_2: 1.0}, {Z_3: 1.0}, {Z_2: 1.0}]
+    elif bodies[0] == bodies[1]:
         columns += [{Y_3: 0.5, Y_2: -0.5}]
     else:
         columns += [{Y_3: 1.0}, {Y_2: 1.0}]

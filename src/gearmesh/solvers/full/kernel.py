@@ -17,7 +17,13 @@ import numpy as np
 from gearmesh.model.contact import CONTACT_LOSS, INVERSE_MESH, NORMAL_MESH, regime_of
 from gearmesh.model.motion import Z_2, Z_3
 from gearmesh.solvers.compilation import inner
-from gearmesh.solvers.full.measures import measure, record_extremum, sample, take_value
+from gearmesh.solvers.full.measures import (
+    locate_extremes,
+    measure,
+    record_extremum,
+    sample,
+    take_value,
+)
 from gearmesh.solvers.full.roots import (
     MAX_DEGREE,
     TABLE_SHAPE,
@@ -36,12 +42,15 @@ from gearmesh.solvers.full.signs import (
     needed_force,
     settle_signs,
 )
-from gearmesh.solvers.full.tape import BRACKET, CONTACT, GAP, V, Y
+from gearmesh.solvers.full.tape import BRACKET, CONTACT, DEPTH, GAP, V, Y
 from gearmesh.solvers.response import DIVERGED, FRICTION_UNDEFINED, STEP_LIMIT
 
 PASSED, SEGMENT_ENDED, TURNED, CROSSED = range(4)
-GAP_CROSSED, PARTED = 7, 8
+GAP_CROSSED, PARTED, PAIR_TURNED = 7, 8, 9
 """Events that end a step, beside those of `signs`."""
+
+_SHORT = 0.1
+"""A shorter step is chosen for the errors of the rates, which are larger than the coordinates'."""
 
 _regime_of = inner(regime_of)
 
@@ -58,6 +67,29 @@ def _cross(case, mode, summary):
         if mode.period >= case.first_kept and not mode.parted:
             summary.contact_losses += 1
     mode.parted = mode.on_force = False
+
+
+@inner
+def _settle_pairs(case, mode, pairs, series, summary):
+    """Find which pairs of teeth press in the segment that has just begun."""
+    for j in range(3):
+        mode.pressing[j] = 1.0 if j < pairs and series[DEPTH + j, 0] >= 0.0 else 0.0
+    mode.entered = False
+    _settle_regime(case, mode, summary)
+
+
+@inner
+def _settle_regime(case, mode, summary):
+    """Enter normal mesh if a pair of teeth presses, and leave it if none does."""
+    presses = mode.pressing[0] + mode.pressing[1] + mode.pressing[2] > 0.0
+    if presses and mode.regime != NORMAL_MESH:
+        mode.regime = NORMAL_MESH
+        mode.parted = False
+    elif mode.regime == NORMAL_MESH and not presses:
+        mode.regime = CONTACT_LOSS
+        if mode.period >= case.first_kept and not mode.parted:
+            summary.contact_losses += 1
+        mode.parted = False
 
 
 @inner
@@ -106,8 +138,11 @@ def _choose_step(case, series, remaining):
         for i in range(case.coordinates):
             size = max(size, abs(series[i, k]))
         if size > 0.0:
-            # The rates have k times the terms of the coordinates.
-            step = min(step, (case.tolerance / (k * size)) ** (1.0 / k))
+            # The rates have k times the terms of the coordinates, and one power of the step less.
+            bound = case.tolerance / (k * size)
+            step = min(step, bound ** (1.0 / k))
+            if step < _SHORT:
+                step = min(step, (bound / _SHORT) ** (1.0 / (k - 1)))
     return step
 
 
@@ -151,6 +186,12 @@ def _find_event(case, segment, mode, state, step, series, rest, scaled, table):
         crossing = first(series[GAP], case.order, step, sign, scaled, table)
         if crossing < end:
             end, event = crossing, GAP_CROSSED
+    if case.single_pairs and mode.regime != INVERSE_MESH:
+        for j in range(segment.pairs):
+            sign = 2.0 * mode.pressing[j] - 1.0
+            turns = first(series[DEPTH + j], case.order, step, sign, scaled, table)
+            if turns < end:
+                end, event = turns, PAIR_TURNED + j
     if case.non_adhesive and mode.regime != CONTACT_LOSS:
         sign = -mode.regime if mode.parted else mode.regime
         parts = first(series[CONTACT], case.order - 2, step, sign, scaled, table)
@@ -179,6 +220,7 @@ def _advance(case, mode, state, series, duration):
     mode.time += duration
     mode.turns = mode.on_level = mode.on_bracket = mode.released = False
     mode.on_gap = mode.on_force = False
+    mode.on_pair[:] = 0.0
 
 
 @inner
@@ -202,6 +244,11 @@ def _follow(case, segment, mode, state, event, summary):
         mode.parted = not mode.parted
         if mode.parted and mode.period >= case.first_kept:
             summary.contact_losses += 1
+    elif event >= PAIR_TURNED:
+        pair = event - PAIR_TURNED
+        mode.on_pair[pair] = 1.0
+        mode.pressing[pair] = 1.0 - mode.pressing[pair]
+        _settle_regime(case, mode, summary)
     elif event == BRACKET_TURNED:
         mode.on_bracket = True
     elif event == SLIP:
@@ -217,6 +264,7 @@ def _pass_boundary(case, mode, state, tape, variant, series, strobes, summary):
     mode.period += 1
     mode.time = 0.0
     mode.segment = 0
+    mode.entered = True
     begin(case, mode, state, tape, variant, series)
     strobes[mode.period, 0] = series[Y, 0]
     strobes[mode.period, 1] = series[V, 0]
@@ -225,7 +273,7 @@ def _pass_boundary(case, mode, state, tape, variant, series, strobes, summary):
 
 
 @inner
-def _start(case, mode, state, tape, variant, series, strobes, summary):
+def _start(case, mode, pairs, state, tape, variant, series, strobes, summary):
     """Write the first stroboscopic point; set the branches of all laws if none are known."""
     begin(case, mode, state, tape, variant, series)
     y = series[Y, 0]
@@ -238,9 +286,12 @@ def _start(case, mode, state, tape, variant, series, strobes, summary):
         mode.slip_sign = 1.0
         if case.follows_run_out and series[BRACKET, 0] < 0.0:
             mode.run_out_sign = -1.0
+        if case.single_pairs:
+            _settle_pairs(case, mode, pairs, series, summary)
         if case.non_adhesive and mode.regime != CONTACT_LOSS:
             expand(case, mode, tape, variant, series, 2)
             mode.parted = mode.regime * series[CONTACT, 0] < 0.0
+    mode.entered = True
     mode.stage = UNDER_WAY
     if case.first_kept == 0:
         take_value(summary, y)
@@ -272,7 +323,8 @@ def run(
     variants : ndarray of int, shape (periods + 1,)
         Which kind of period each is: where single teeth have factors, periods differ.
     tape : tuple of ndarray
-        The fields of `gearmesh.solvers.full.tape.Tape` for the segments of every kind of period.
+        Numbers and branches of `gearmesh.solvers.full.recurrences.Recurrences` for the segments of
+        every kind of period.
     state : ndarray, shape (12,)
         Coordinates and, from the seventh place, rates at the start; at the end afterwards.
     modes : ndarray of `MODE`, shape (1,)
@@ -300,12 +352,14 @@ def run(
     scaled = np.zeros(MAX_DEGREE + 1)
     table = np.zeros(TABLE_SHAPE)
     if mode.stage != UNDER_WAY:
-        _start(case, mode, state, tape, variants[mode.period], series, strobes, summary)
+        pairs, kind = segments[0].pairs, variants[mode.period]
+        _start(case, mode, pairs, state, tape, kind, series, strobes, summary)
     last = summary.steps + most_turns
     while summary.steps < last:
         segment = segments[mode.segment]
         if mode.time >= segment.end:
             mode.segment += 1
+            mode.entered = True
             if mode.segment == segments.size:
                 following = variants[mode.period + 1]
                 _pass_boundary(case, mode, state, tape, following, series, strobes, summary)
@@ -317,6 +371,9 @@ def run(
         if not abs(series[Y, 0]) < case.farthest:
             summary.status = DIVERGED
             return True
+        if mode.entered and case.single_pairs:
+            _settle_pairs(case, mode, segment.pairs, series, summary)
+            begin(case, mode, state, tape, variant, series)
         settled = True
         if case.follows_run_out:
             settled = settle_signs(case, segment, mode, tape, variant, state, series)
@@ -337,6 +394,7 @@ def run(
             expand_outputs(case, mode, tape, variant, per_period > 0, series)
             measure(case, mode, series, duration, summary)
             if per_period:
+                locate_extremes(case, series, duration, summary)
                 until = segment.end if event == SEGMENT_ENDED else mode.time + duration
                 sample(case, mode, series, until, samples, per_period, summary)
         _advance(case, mode, state, series, duration)

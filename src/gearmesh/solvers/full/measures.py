@@ -17,7 +17,17 @@ from gearmesh.solvers.full.tape import (
 )
 from gearmesh.solvers.response import MAXIMUM, MEASURED, MINIMUM
 
-SUMMARY = np.dtype([*MEASURED, ("least_contact_force", np.float64), ("samples", np.int64)])
+EXTREMAL = (NORMAL, TRANSMISSION, BEARING_3, BEARING_2)
+"""Rows whose least and greatest values are located where they are sampled."""
+
+SUMMARY = np.dtype(
+    [
+        *MEASURED,
+        ("least_contact_force", np.float64),
+        ("extremes", np.float64, (len(EXTREMAL), 2)),
+        ("samples", np.int64),
+    ]
+)
 """What is measured on a run, and how many samples were taken."""
 
 SAMPLE = np.dtype(
@@ -100,6 +110,17 @@ def measure(case, mode, series, duration, summary):
     if mode.regime != CONTACT_LOSS:
         least = _least(series[NORMAL], case.order - 2, duration, mode.regime)
         summary.least_contact_force = min(summary.least_contact_force, least)
+
+
+@inner
+def locate_extremes(case, series, duration, summary):
+    """Update the least and greatest values of what is sampled."""
+    for i in range(len(EXTREMAL)):
+        row = series[EXTREMAL[i]]
+        least = _least(row, case.order - 2, duration, 1.0)
+        greatest = -_least(row, case.order - 2, duration, -1.0)
+        summary.extremes[i, 0] = min(summary.extremes[i, 0], least)
+        summary.extremes[i, 1] = max(summary.extremes[i, 1], greatest)
 
 
 @inner

@@ -21,10 +21,18 @@ from gearmesh.solvers.compilation import persistent
 from gearmesh.solvers.full import kernel
 from gearmesh.solvers.full.coordinates import embedding, kinds_of_period, projected, signs_act
 from gearmesh.solvers.full.measures import SAMPLE, SUMMARY
+from gearmesh.solvers.full.recurrences import recurrences
 from gearmesh.solvers.full.roots import MAX_DEGREE
 from gearmesh.solvers.full.series import CASE, CONTINUED, MODE, SEGMENT
-from gearmesh.solvers.full.tape import tape
-from gearmesh.solvers.response import EXTREMUM, LOOSENING, Companion, Response, Samples, assemble
+from gearmesh.solvers.response import (
+    EXTREMUM,
+    LOOSENING,
+    OK,
+    Companion,
+    Response,
+    Samples,
+    assemble,
+)
 
 _EXTREMA_PER_PERIOD = 64
 # Steps between two returns to Python, where an interruption is noticed: some 0.1 s.
@@ -85,14 +93,26 @@ def integrate(
         run.final_state(),
         companion,
         tolerance,
-        _samples(run.samples) if samples_per_period else None,
+        _samples(run.samples, run.summary["extremes"]) if samples_per_period else None,
         run.rotation_drift,
         float(run.summary["least_contact_force"]),
     )
 
 
+def advance(problem: Problem, share: float, tolerance: float) -> np.ndarray | None:
+    """Return the six coordinates and their rates after a share of a mesh period.
+
+    The result is None if the run fails.
+    """
+    short = replace(problem, wheels=problem.both_wheels, teeth=1, revolutions=1, kept_revolutions=0)
+    run = _Run(short, tolerance, 0, suitable_order(tolerance), share=share)
+    return run.all_six() if run.summary["status"] == OK else None
+
+
 class _Run:
     """A run from its start to its end; `displacement` displaces wheel 3 at the start.
+
+    The mesh periods are cut off after a `share` of them.
 
     If the run has more extrema than there is room for, it is integrated again with room for all.
     """
@@ -104,18 +124,19 @@ class _Run:
         samples_per_period: int,
         order: int,
         displacement: float = 0.0,
+        share: float = 1.0,
     ) -> None:
         self.problem = problem
         self.embedding = embedding(problem)
         kinds, variants = kinds_of_period(problem)
-        recorded = tape(problem, kinds)
+        found = recurrences(problem, kinds, samples_per_period > 0)
         self._arguments = (
             _case(problem, tolerance, order, self.embedding.shape[1]),
-            _segments(problem),
+            _segments(problem, share),
             variants,
-            tuple(recorded),
+            (found.numbers, found.branches),
         )
-        self._series = np.zeros((recorded.height, MAX_DEGREE + 1))
+        self._series = np.zeros((found.height, MAX_DEGREE + 1))
         self.extrema = np.zeros(0, EXTREMUM)
         self.start = np.concatenate(start(problem))
         self.start[ROTATION_3] += displacement
@@ -129,6 +150,7 @@ class _Run:
         summaries = np.zeros(1, SUMMARY)
         summaries["y_max"], summaries["y_min"] = -np.inf, np.inf
         summaries["least_contact_force"] = np.inf
+        summaries["extremes"] = np.inf, -np.inf
         self.summary = summaries[0]
         self.state = projected(self.start, self.embedding)
         self.mode = _mode(self.problem)
@@ -152,7 +174,7 @@ class _Run:
     def final_state(self) -> State:
         """Return the state at the end of the run."""
         problem, mode = self.problem, self.mode[0]
-        six = self._all_six()
+        six = self.all_six()
         b, b_rate = (six[[Y_3, 6 + Y_3]] - six[[Y_2, 6 + Y_2]]).tolist()
         y, v = self.strobes[-1].tolist()
         branches = Branches(
@@ -168,7 +190,7 @@ class _Run:
         periods = problem.start_period + problem.periods
         return State(y, v, b, b_rate, tuple(six.tolist()), periods, branches)
 
-    def _all_six(self) -> np.ndarray:
+    def all_six(self) -> np.ndarray:
         """Return the six coordinates and their rates; what is not integrated is 0."""
         n = self.embedding.shape[1]
         both = self.embedding @ self.state[:n], self.embedding @ self.state[6 : 6 + n]
@@ -179,7 +201,7 @@ class _Run:
         """Change of (phi_3 - phi_2)/2 over the run, in rad; not a number if it is left out."""
         if self.embedding[ROTATION_3, 0] != 1.0:
             return np.nan
-        gained = self._all_six() - self.start
+        gained = self.all_six() - self.start
         wheel_3, wheel_2 = self.problem.both_wheels
         turned_3 = gained[ROTATION_3] / wheel_3.base_radius
         return 0.5 * float(turned_3 - gained[ROTATION_2] / wheel_2.base_radius)
@@ -217,8 +239,9 @@ def _case(problem: Problem, tolerance: float, order: int, coordinates: int) -> n
     # Numbers that have the same name and meaning in both.
     for name in ("period", "initial_phase", "backlash", "start_period", "periods"):
         case[name] = getattr(problem, name)
-    case["varying_backlash"] = bool(problem.terms.backlash_harmonics)
+    case["varying_backlash"] = problem.terms.backlash_varies
     case["non_adhesive"] = problem.terms.non_adhesive
+    case["single_pairs"] = problem.terms.pairs_touch_singly
     case["friction"] = problem.friction_coefficient
     case["follows_run_out"] = signs_act(problem)
     case["masses"] = [wheel.body_mass for wheel in problem.both_wheels]
@@ -236,13 +259,17 @@ def _case(problem: Problem, tolerance: float, order: int, coordinates: int) -> n
     return case
 
 
-def _segments(problem: Problem) -> np.ndarray:
-    """Return the segments of a mesh period as the kernel takes them."""
-    parts = [(part.end * problem.period, part.gamma) for part in segments(problem)]
+def _segments(problem: Problem, share: float) -> np.ndarray:
+    """Return the segments of a share of a mesh period as the kernel takes them."""
+    parts = [
+        (min(part.end, share) * problem.period, part.gamma, len(part.pairs))
+        for part in segments(problem)
+        if part.start < share
+    ]
     return np.array(parts, SEGMENT)
 
 
-def _samples(rows: np.ndarray) -> Samples:
+def _samples(rows: np.ndarray, extremes: np.ndarray) -> Samples:
     columns = {name: rows[name].copy() for name in SAMPLE.fields or ()}
     regime = columns["regime"].astype(np.int8)
     return Samples(
@@ -259,4 +286,5 @@ def _samples(rows: np.ndarray) -> Samples:
         force_bearing_2=columns["bearing_2"],
         transmission_error=columns["transmission_error"],
         regime=regime,
+        extremes=extremes,
     )

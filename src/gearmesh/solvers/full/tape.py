@@ -9,82 +9,52 @@ operands (Jorba and Zou, Experimental Mathematics 14, 2005). The compiled solver
 
 from collections.abc import Iterable, Mapping
 from dataclasses import replace
-from functools import lru_cache
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 
 from gearmesh.model import motion
 from gearmesh.model.contact import CONTACT_LOSS, INVERSE_MESH, NORMAL_MESH
-from gearmesh.model.mesh import backlash
+from gearmesh.model.flanks import distances
 from gearmesh.model.problem import Problem
 from gearmesh.model.stiffness import TURN
 from gearmesh.solvers.full.coordinates import embedding, signs_act
-from gearmesh.solvers.full.roots import MAX_DEGREE
 
 COORDINATES, RATES = 0, 6
 TIME, CONSTANT, SIGNS = range(12, 15)
 Y, V, SWING, BRACKET, GAP, CONTACT, ELASTIC, FRICTION, STIFFNESS, NORMAL = range(15, 25)
 TRANSMISSION, BEARING_3, BEARING_2 = range(25, 28)
-FIRST_FREE = 28
+PRESSING, DEPTH = 28, 31
+FIRST_FREE = 34
 """Rows of the table of series.
 
 The first six are the coordinates, the next six their rates. TIME counts mesh periods. CONSTANT
 is 1, SIGNS the product of both signs of eq. (6). V and BRACKET are the rates of Y and
 SWING. GAP is y + s(t). CONTACT and NORMAL are the force of flanks that touch, and what of it acts
 (`gearmesh.model.motion.Forces`). TRANSMISSION is the transmission error, BEARING_3 and BEARING_2
-are what the bodies exert on their bearings along the mesh line.
+are what the bodies exert on their bearings along the mesh line. PRESSING and DEPTH have a row for
+each pair of teeth that may touch singly: 1 where it presses, else 0, and how deep it is in contact.
 """
 
-SUM, MOVES, ACCELERATE, PRODUCT, SIGNED, WAVE, SINE, ROOT, ROUND = range(9)
+SUM, MOVES, ACCELERATE, PRODUCT, SIGNED, WAVE, SINE, ROOT, ROUND, ENTRY, POWER = range(11)
 """Operations.
 
 MOVES is a sum whose rate is wanted too, in the next row. SIGNED is a product with the sign of y'.
-WAVE is the sine and cosine of an angle that is linear in time.
+WAVE is the sine and cosine of an angle that is linear in time. ENTRY is the entry of a table, which
+repeats, at a whole number. POWER has a constant exponent.
 """
 
-CODE, OUT, FIRST, SECOND, DEGREE, SUMMANDS = range(6)
-"""Columns of an operation: what it does, the row that it writes, and its operands.
+Operation = tuple[int, int, tuple[Any, ...]]
+"""What is done, the row that is written, and the operands.
 
-The operands of a product are two rows, and the degree in time of the first. A sum has the number of
-its summands in place of the second operand; their rows stand from SUMMANDS on.
+The operands of a product are two rows. A sum has its summands, rows and factors, and a constant.
+WAVE has the slope and the constant of its angle, ENTRY a table after its row, POWER an exponent.
 """
 
-ADDED, SLOPE, FACTORS = range(3)
-"""Columns of the numbers of an operation: a constant summand, the rate of the angle of WAVE, and
-from FACTORS on the factors of the summands."""
-
-_Operation = tuple[int, int, tuple[Any, ...]]
-"""What is done, the row that is written, and the operands."""
-
-_SUMS = (SUM, MOVES, ACCELERATE)
+SUMS = (SUM, MOVES, ACCELERATE)
 
 N_BRANCHES = 12
 """Branches of a segment: three regimes, sticking or not, parted or not (`branch_of`)."""
-
-
-class Tape(NamedTuple):
-    """Operations of all branches, as the compiled solver takes them.
-
-    Attributes
-    ----------
-    operations : ndarray of int, shape (n, m)
-        With the columns `CODE` to `SUMMANDS` and further.
-    numbers : ndarray, shape (n, m)
-        With the columns `ADDED` to `FACTORS` and further.
-    branches : ndarray of int, shape (`N_BRANCHES` * segments, 5)
-        Where the operations of a branch begin: of y, of the accelerations, of the normal force, of
-        what else is sampled; and where they end. Branches that cannot occur are zero.
-    """
-
-    operations: np.ndarray
-    numbers: np.ndarray
-    branches: np.ndarray
-
-    @property
-    def height(self) -> int:
-        """Number of rows that the table of series needs."""
-        return max(FIRST_FREE, int(self.operations[:, OUT].max()) + 2)
 
 
 class _Traced:
@@ -145,6 +115,12 @@ class _Traced:
     def __round__(self) -> "_Traced":
         return self.trace.single(ROUND, self)
 
+    def entry(self, table: tuple[float, ...]) -> "_Traced":
+        return self.trace.entry(table, self)
+
+    def power(self, exponent: float) -> "_Traced":
+        return self.trace.power(self, exponent)
+
     def sqrt(self) -> "_Traced":
         return self.trace.single(ROOT, self)
 
@@ -159,8 +135,7 @@ class _Trace:
     """The operations recorded so far, each only once."""
 
     def __init__(self) -> None:
-        self.operations: list[_Operation] = []
-        self.degrees = {TIME: 1, CONSTANT: 0, SIGNS: 0}
+        self.operations: list[Operation] = []
         self._known: dict[tuple[Any, ...], int] = {}
         self._moduli: dict[int, int] = {}
         self._free = FIRST_FREE
@@ -168,18 +143,13 @@ class _Trace:
     def row(self, row: int) -> _Traced:
         return _Traced(self, {row: 1.0})
 
-    def _result(self, code: int, operands: tuple[Any, ...], degree: int, rows: int = 1) -> int:
+    def _result(self, code: int, operands: tuple[Any, ...], rows: int = 1) -> int:
         key = (code, *operands)
         if key not in self._known:
             self._known[key] = out = self._free
             self._free += rows
             self.operations.append((code, out, operands))
-            for row in range(out, out + rows):
-                self.degrees[row] = degree
         return self._known[key]
-
-    def _degree(self, terms: Iterable[int]) -> int:
-        return max((self.degrees.get(row, MAX_DEGREE) for row in terms), default=0)
 
     def _row_of(self, terms: Mapping[int, float]) -> tuple[int, float]:
         """Return a row and a factor that together are a sum without a constant."""
@@ -198,14 +168,12 @@ class _Trace:
             if row in self._moduli:
                 code, row_a, row_b = SIGNED, self._moduli[row], other
                 break
-        low, high = sorted((row_a, row_b), key=lambda row: (self._degree([row]), row))
-        degree = min(MAX_DEGREE, self._degree([low]) + self._degree([high]))
-        found = self._result(code, (low, high, self._degree([low])), degree)
+        found = self._result(code, tuple(sorted((row_a, row_b))))
         return rest + _Traced(self, {found: factor_a * factor_b})
 
     def modulus(self, row: int) -> _Traced:
         """Return the absolute value of a number with the sign of y'."""
-        found = self._result(SIGNED, (CONSTANT, row, 0), MAX_DEGREE)
+        found = self._result(SIGNED, (CONSTANT, row))
         self._moduli[found] = row
         return self.row(found)
 
@@ -214,12 +182,19 @@ class _Trace:
         if value.constant == 0.0 and list(value.terms.values()) == [1.0]:
             return next(iter(value.terms))
         operands = (tuple(sorted(value.terms.items())), value.constant)
-        return self._result(SUM, operands, self._degree(value.terms))
+        return self._result(SUM, operands)
 
     def single(self, code: int, value: _Traced) -> _Traced:
         """Return what an operation makes of one number."""
-        degree = 0 if code == ROUND else MAX_DEGREE
-        return self.row(self._result(code, (self._row_exactly(value),), degree))
+        return self.row(self._result(code, (self._row_exactly(value),)))
+
+    def entry(self, table: tuple[float, ...], place: _Traced) -> _Traced:
+        """Return the entry of a table at a whole number."""
+        return self.row(self._result(ENTRY, (self._row_exactly(place), table)))
+
+    def power(self, base: _Traced, exponent: float) -> _Traced:
+        """Return a positive number to a constant power."""
+        return self.row(self._result(POWER, (self._row_exactly(base), exponent)))
 
     def wave(self, angle: _Traced) -> tuple[_Traced, _Traced]:
         """Return sine and cosine of an angle."""
@@ -230,9 +205,9 @@ class _Trace:
             )
         if angle.terms.keys() == {TIME}:
             operands: tuple[Any, ...] = (angle.terms[TIME], angle.constant)
-            out = self._result(WAVE, operands, MAX_DEGREE, rows=2)
+            out = self._result(WAVE, operands, rows=2)
         else:
-            out = self._result(SINE, (self._row_exactly(angle),), MAX_DEGREE, rows=2)
+            out = self._result(SINE, (self._row_exactly(angle),), rows=2)
         return self.row(out), self.row(out + 1)
 
     def name(self, row: int, value: Any, code: int = SUM) -> _Traced:
@@ -248,48 +223,51 @@ def branch_of(regime: int, sticks: bool, parted: bool) -> int:
     return (regime + 1) * 4 + sticks * 2 + parted
 
 
-def tape(problem: Problem, segments: Iterable[float]) -> Tape:
-    """Record the equations of motion of `problem`.
+def laws_of(problem: Problem) -> Problem:
+    """Return `problem` with all fixed that its equations of motion do not contain.
+
+    The laws know the time by the angles of the wheels only: in mesh periods they are the same for
+    all mesh frequencies.
+    """
+    return replace(problem, nu=TURN, revolutions=1, kept_revolutions=0, initial_state=None)
+
+
+def record(laws: Problem, segments: Iterable[float]) -> list[list[list[Operation]]]:
+    """Record the equations of motion.
 
     Parameters
     ----------
-    problem : Problem
+    laws : Problem
+        From `laws_of`.
     segments : iterable of float
         A mesh phase in each segment.
+
+    Returns
+    -------
+    list
+        For each of the `N_BRANCHES` of each segment the operations of y, of the accelerations, of
+        the normal force, and of what else is sampled; nothing for a branch that cannot occur.
     """
-    # The laws know the time by the angles of the wheels only: in mesh periods it is the same for
-    # all mesh frequencies.
-    laws = replace(problem, nu=TURN, revolutions=1, kept_revolutions=0, initial_state=None)
-    return _recorded(laws, tuple(segments))
-
-
-@lru_cache(maxsize=256)
-def _recorded(problem: Problem, segments: tuple[float, ...]) -> Tape:
-    columns = embedding(problem)
-    operations: list[_Operation] = []
-    branches: list[tuple[int, ...]] = []
-    sticks = (False, True) if signs_act(problem) else (False,)
+    columns = embedding(laws)
+    branches: list[list[list[Operation]]] = []
+    signed = signs_act(laws)
     for segment in segments:
-        found = [(0,) * 5] * N_BRANCHES
+        found: list[list[list[Operation]]] = [[] for _ in range(N_BRANCHES)]
         for regime in (CONTACT_LOSS, NORMAL_MESH, INVERSE_MESH):
-            can_part = problem.terms.non_adhesive and regime != CONTACT_LOSS
-            for stick in sticks:
+            can_part = laws.terms.non_adhesive and regime != CONTACT_LOSS
+            for stick in (False, True) if signed else (False,):
                 for parted in (False, True) if can_part else (False,):
                     mode = motion.Mode(regime, segment, 1, 0 if stick else 1, parted)
-                    parts = _record(problem, mode, columns, len(sticks) > 1)
-                    places = [len(operations)]
-                    for part in parts:
-                        operations += part
-                        places.append(len(operations))
-                    found[branch_of(regime, stick, parted)] = tuple(places)
+                    place = branch_of(regime, stick, parted)
+                    found[place] = _record(laws, mode, columns, signed)
         branches += found
-    return Tape(*_arrays(operations), np.array(branches, np.int64))
+    return branches
 
 
 def _record(
     problem: Problem, mode: motion.Mode, columns: np.ndarray, signed: bool
-) -> list[list[_Operation]]:
-    """Return the operations of a branch in four parts, which `Tape.branches` lists."""
+) -> list[list[Operation]]:
+    """Return the operations of a branch in four parts, as `record` does."""
     trace = _Trace()
     time = trace.row(TIME)
     n = columns.shape[1]
@@ -305,13 +283,18 @@ def _record(
     y = trace.name(Y, motion.displacement(problem, time, q), MOVES)
     if signed:
         trace.name(SWING, motion.run_out_integral(problem, time, q), MOVES)
-    if problem.terms.backlash_harmonics:
-        trace.name(GAP, y + backlash(problem, time))
+    if problem.terms.backlash_varies:
+        trace.name(GAP, y + motion.gap(problem, time, q))
+    if problem.terms.pairs_touch_singly:
+        starts = distances(problem, motion.mesh_phase(problem, time), mode.segment)
+        for j, start in enumerate(starts):
+            trace.name(DEPTH + j, y - start)
+        mode = replace(mode, pressing=tuple(trace.row(PRESSING + j) for j in range(len(starts))))
     moved = len(trace.operations)
     if signed and mode.slip_sign:
         mode = replace(mode, slip_sign=trace.row(SIGNS))
     mesh = motion.forces(problem, time, q, v, y, trace.row(V), mode)
-    wanted = [Y, V, SWING, BRACKET, GAP]
+    wanted = [Y, V, SWING, BRACKET, GAP, *range(DEPTH, DEPTH + 3)]
     if problem.terms.non_adhesive:
         trace.name(CONTACT, mesh.contact)
         wanted.append(CONTACT)
@@ -339,7 +322,8 @@ def _record(
     everything = trace.operations
     needed = _needed(everything[:forced], wanted)
     pressing = _needed(everything, [NORMAL]) - needed
-    outputs = _needed(everything, [*range(STIFFNESS, FIRST_FREE), FRICTION]) - needed - pressing
+    sampled = [*range(STIFFNESS, BEARING_2 + 1), FRICTION]
+    outputs = _needed(everything, sampled) - needed - pressing
     return [
         [everything[i] for i in sorted(needed) if i < moved],
         [everything[i] for i in sorted(needed) if i >= moved],
@@ -348,7 +332,7 @@ def _record(
     ]
 
 
-def _needed(operations: list[_Operation], rows: Iterable[int]) -> set[int]:
+def _needed(operations: list[Operation], rows: Iterable[int]) -> set[int]:
     """Return the places of the operations that `rows` and the accelerations need."""
     wanted, found = set(rows), set()
     for i in range(len(operations) - 1, -1, -1):
@@ -356,27 +340,10 @@ def _needed(operations: list[_Operation], rows: Iterable[int]) -> set[int]:
         second = code in (WAVE, SINE) and out + 1 in wanted
         if code == ACCELERATE or out in wanted or second:
             found.add(i)
-            if code in _SUMS:
+            if code in SUMS:
                 wanted.update(row for row, _ in operands[0])
+            elif code in (ENTRY, POWER):
+                wanted.add(operands[0])
             elif code != WAVE:
                 wanted.update(operands[:2])
     return found
-
-
-def _arrays(operations: list[_Operation]) -> tuple[np.ndarray, np.ndarray]:
-    """Return operations and their numbers, as `Tape` holds them."""
-    most = max((len(operands[0]) for code, _, operands in operations if code in _SUMS), default=0)
-    table = np.zeros((len(operations), SUMMANDS + most), np.uint64)
-    numbers = np.zeros((len(operations), FACTORS + most))
-    for i, (code, out, operands) in enumerate(operations):
-        table[i, CODE], table[i, OUT] = code, out
-        if code in _SUMS:
-            summands, numbers[i, ADDED] = operands
-            table[i, SECOND] = len(summands)
-            for j, (row, factor) in enumerate(summands):
-                table[i, SUMMANDS + j], numbers[i, FACTORS + j] = row, factor
-        elif code == WAVE:
-            numbers[i, SLOPE], numbers[i, ADDED] = operands
-        else:
-            table[i, FIRST : FIRST + len(operands)] = operands
-    return table, numbers

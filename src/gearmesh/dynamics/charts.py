@@ -1,0 +1,125 @@
+"""The numbers in which orbits of the general solver are sought, and what their mean rotation does.
+
+The mean rotation is (phi_3 - phi_2) / 2 beside the stated speeds: both wheels turn, and the mesh
+stays as it is. Three cases differ.
+
+- `ABSENT`: without run-out and without damping to the frame, no force on the mesh depends on it.
+- `FREE`: torsional damping acts on its rate, but nothing depends on its angle. It drifts at a rate
+  that repeats in every period. An orbit closes in everything but this angle.
+- `HELD`: run-out depends on its angle, and friction and damping slow it down, because the static
+  moments balance each other and no moment makes up for what is lost. So the stated equations have
+  no orbit: the wheels leave the stated speed. A drive that holds the speed exerts constant moments
+  on both wheels which make up for the loss. They accelerate the mean rotation alone and do not load
+  the mesh, so an orbit tends to that without run-out as the run-out vanishes. They are unknowns
+  of an orbit, and the angle at the initial phase is given in their place.
+"""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from gearmesh.model.functions import Harmonic
+from gearmesh.model.motion import ROTATION_2, ROTATION_3, Y_2, Y_3, relative_motion
+from gearmesh.model.problem import Problem, State
+from gearmesh.solvers.full.coordinates import embedding, projected
+
+ABSENT, FREE, HELD = "absent", "free", "held"
+
+
+@dataclass(frozen=True)
+class Chart:
+    """The coordinates of a problem whose orbits are sought.
+
+    A motion is at a place, of shape (2 n,): n coordinates and their rates. If the mean rotation is
+    not absent, it is the first coordinate, in y_st on the base circles. The unknowns of an orbit
+    are the numbers of this place, without the angle of the mean rotation where it is free. Where it
+    is held, the first unknown is the acceleration of this coordinate by the holding moments, times
+    the square of the period.
+
+    Attributes
+    ----------
+    columns : ndarray, shape (6, n)
+        The six coordinates of the model as sums of the coordinates.
+    rotation : str
+        `ABSENT`, `FREE` or `HELD`.
+    """
+
+    columns: np.ndarray
+    rotation: str
+
+    @property
+    def n(self) -> int:
+        """Number of coordinates."""
+        return self.columns.shape[1]
+
+    def place_of_six(self, six: np.ndarray) -> np.ndarray:
+        """Return the place of a motion in the six coordinates and their rates."""
+        found = projected(six, self.columns)
+        return np.concatenate([found[: self.n], found[6 : 6 + self.n]])
+
+    def place(self, unknowns: np.ndarray, angle: float) -> np.ndarray:
+        """Return the place that unknowns of an orbit state; `angle` is that of mean rotation."""
+        if self.rotation == ABSENT:
+            return unknowns
+        return np.append(angle, unknowns if self.rotation == FREE else unknowns[1:])
+
+    def unknowns(self, place: np.ndarray, held: float = 0.0) -> np.ndarray:
+        """Return the unknowns of an orbit at a place; `held` is the first one where it is held."""
+        if self.rotation == HELD:
+            return np.append(held, place[1:])
+        return place[1:] if self.rotation == FREE else place
+
+    def closing(self, start: np.ndarray, end: np.ndarray) -> np.ndarray:
+        """Return by how much a motion between two places fails to close."""
+        return (end - start)[1:] if self.rotation == FREE else end - start
+
+    def monodromy(self, jacobian: np.ndarray) -> np.ndarray:
+        """Return what is left of the Jacobian of places if the mean rotation is left out."""
+        left_out = {ABSENT: [], FREE: [0], HELD: [0, self.n]}[self.rotation]
+        return np.delete(np.delete(jacobian, left_out, 0), left_out, 1)
+
+    def moments(self, problem: Problem, unknowns: np.ndarray, periods: int) -> tuple[float, float]:
+        """Return the holding moments on wheels 3 and 2 over R_bi, in F_st."""
+        if self.rotation != HELD:
+            return 0.0, 0.0
+        # (phi_3 - phi_2) R_b / 2 counts half in each rotation.
+        acceleration = 0.5 * float(unknowns[0]) / (periods * problem.period) ** 2
+        wheel_3, wheel_2 = problem.both_wheels
+        return wheel_3.inertia * acceleration, -wheel_2.inertia * acceleration
+
+
+def chart_of(problem: Problem) -> Chart:
+    """Return the chart of a problem."""
+    columns = embedding(problem)
+    if columns[ROTATION_2, 0] != 0.0:
+        return Chart(columns, ABSENT)
+    columns[[ROTATION_3, ROTATION_2], :2] = [[0.5, 0.5], [-0.5, 0.5]]
+    if problem.has_run_out:
+        return Chart(columns, HELD)
+    if any(problem.terms.torsional_damping):
+        return Chart(columns, FREE)
+    return Chart(columns[:, 1:], ABSENT)
+
+
+def with_moments(problem: Problem, moments: tuple[float, float]) -> Problem:
+    """Return the problem with constant moments besides on wheels 3 and 2."""
+    if not any(moments):
+        return problem
+    terms = problem.terms
+    terms = replace(
+        terms,
+        torque_harmonics_3=(*terms.torque_harmonics_3, Harmonic(0.0, moments[0], 0.0)),
+        torque_harmonics_2=(*terms.torque_harmonics_2, Harmonic(0.0, moments[1], 0.0)),
+    )
+    return replace(problem, terms=terms)
+
+
+def state_at_place(problem: Problem, place: np.ndarray) -> State:
+    """Return the state of a run at a place, when t = 0 at mesh phase 0."""
+    columns = chart_of(problem).columns
+    n = columns.shape[1]
+    q, v = columns @ place[:n], columns @ place[n:]
+    bare = replace(problem, initial_state=None)
+    y, rate = relative_motion(bare, bare.start_time, q, v)
+    both = (*q.tolist(), *v.tolist())
+    return State(y, rate, q[Y_3] - q[Y_2], v[Y_3] - v[Y_2], coordinates=both)

@@ -1,0 +1,108 @@
+"""What a curve of orbits asks of a motion, whichever solver integrates it."""
+
+from typing import Protocol, Self
+
+import numpy as np
+
+from gearmesh.dynamics.orbits import TimeCourse
+from gearmesh.model.problem import Problem
+
+
+class Shot(Protocol):
+    """A motion over whole mesh periods; it is an orbit if its defect is 0.
+
+    `gearmesh.dynamics.orbits.Orbit` is one of the reduced system, with exact derivatives, and
+    `gearmesh.dynamics.general_orbits.GeneralOrbit` one of the general solver.
+    """
+
+    @property
+    def problem(self) -> Problem:
+        """The gear pair."""
+
+    @property
+    def periods(self) -> int:
+        """Mesh periods of the motion."""
+
+    @property
+    def repeats_after(self) -> int:
+        """Mesh periods after which the excitation repeats."""
+
+    @property
+    def state(self) -> np.ndarray:
+        """The k numbers that determine the motion, shape (k,)."""
+
+    @property
+    def defect(self) -> np.ndarray:
+        """By how much the motion fails to close, shape (k,)."""
+
+    @property
+    def gradient(self) -> np.ndarray:
+        """Jacobian of the defect in the state, shape (k, k)."""
+
+    @property
+    def stretched(self) -> np.ndarray | None:
+        """Derivative of the defect with respect to the logarithm of the mesh period, if known."""
+
+    @property
+    def monodromy(self) -> np.ndarray:
+        """The matrix whose eigenvalues are the Floquet multipliers."""
+
+    @property
+    def multipliers(self) -> np.ndarray:
+        """Floquet multipliers, the largest modulus first."""
+
+    @property
+    def stable(self) -> bool:
+        """Whether all multipliers are inside the unit circle and the orbit is not neutral."""
+
+    @property
+    def neutral(self) -> bool:
+        """Whether no damping of the mesh acts along the orbit and nothing grows."""
+
+    @property
+    def undamped(self) -> bool:
+        """Whether no damping of the mesh acts along the orbit."""
+
+    @property
+    def extrema(self) -> np.ndarray:
+        """Extrema of y, shape (n, 3): time, y, kind (1 or -1)."""
+
+    @property
+    def stiffness_jumps(self) -> np.ndarray:
+        """Events at which C(t) jumps, with the columns of `solvers.reduced.variational`."""
+
+    @property
+    def y_max(self) -> float:
+        """Greatest y."""
+
+    @property
+    def y_min(self) -> float:
+        """Least y."""
+
+    @property
+    def y(self) -> float:
+        """Relative motion y at the initial phase."""
+
+    @property
+    def v(self) -> float:
+        """Velocity y' at the initial phase."""
+
+    @property
+    def residual(self) -> float:
+        """Size of the defect."""
+
+    @property
+    def signature(self) -> tuple[int, ...]:
+        """Regimes in their order over the period."""
+
+    def time_course(self, samples_per_period: int = 256) -> TimeCourse:
+        """Return the time course over the period."""
+
+    def shot(self, problem: Problem, state: np.ndarray, periods: int) -> Self:
+        """Return another motion of the same kind; raises NoOrbit if it cannot be integrated."""
+
+    def at_phase(self, phase: float) -> Self:
+        """Return the orbit with its state taken at another mesh phase.
+
+        It need not be possible where mesh periods differ.
+        """

@@ -1,0 +1,57 @@
+"""Measured deviations of gear teeth, from the chart of an inspection."""
+
+import csv
+import itertools
+from pathlib import Path
+
+from gearmesh.errors import InputError
+
+_COLUMNS = ("F_p", "f_p")
+
+
+def read_pitch_chart(path: str | Path, unit: str = "um") -> list[str]:
+    """Return the pitch errors of a wheel, as ``pair.replace(pitch_errors=…)`` takes them.
+
+    Parameters
+    ----------
+    path : str or Path
+        CSV file with one line for each tooth, in their order. The first line names the columns.
+        One of them is read: ``F_p``, the index deviation of each tooth, or ``f_p``, the single
+        pitch deviation before it (ISO 1328-1), which is added up from tooth to tooth. Both are
+        positive where a flank stands out towards its mate.
+    unit : str
+        Unit of the column.
+
+    Returns
+    -------
+    list of str
+        Deviation of each tooth from its ideal place, with its unit; the first line of the chart is
+        tooth 0.
+
+    Raises
+    ------
+    InputError
+        One line: which file and line, what was found, what is allowed.
+    """
+    try:
+        with Path(path).open(newline="", encoding="utf-8-sig") as file:
+            rows = list(csv.DictReader(file, skipinitialspace=True))
+    except (OSError, UnicodeDecodeError, csv.Error) as error:
+        reason = error.strerror if isinstance(error, OSError) else "not a table in UTF-8"
+        raise InputError(f"{path}: cannot be read: {reason}") from None
+    named = [name for name in _COLUMNS if rows and name in rows[0]]
+    if len(named) != 1:
+        found = ", ".join(str(name) for name in rows[0]) if rows else "no teeth"
+        raise InputError(f"{path}: found {found}; allowed is one column F_p or f_p")
+    values = []
+    for line, row in enumerate(rows, start=2):
+        text = row[named[0]]
+        try:
+            values.append(float(text))
+        except (TypeError, ValueError):
+            raise InputError(f"{path}: line {line}: found {text!r}; allowed is a number") from None
+    if named == ["f_p"]:
+        # The pitches close around the wheel, so their deviations have no mean.
+        mean = sum(values) / len(values)
+        values = list(itertools.accumulate(value - mean for value in values))
+    return [f"{value!r} {unit}" for value in values]

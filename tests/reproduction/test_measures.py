@@ -1,0 +1,562 @@
+"""What each claim measures, on thresholds that are given, and on formulas written out."""
+
+import json
+import math
+from dataclasses import dataclass
+
+import numpy as np
+import pytest
+import xarray as xr
+from scipy.linalg import expm
+
+from gearmesh.errors import InputError
+from gearmesh.reproduction.claims import (
+    DEVIATES,
+    NOT_TESTABLE,
+    REPRODUCED,
+    Bound,
+    Claim,
+    Entry,
+    Evidence,
+    NotInStudy,
+    checking,
+    collect,
+    fig2,
+    fig3,
+    fig4,
+    fig5,
+    fig6,
+    fig7,
+    holds,
+    load_ledger,
+    printed,
+    read_entries,
+    verdict,
+    write_entries,
+)
+
+LUBRICANT = ("c-lubricant", "d-lubricant", "h-lubricant")
+
+
+@pytest.fixture
+def measured(pair):
+    """Return what a measure finds in thresholds."""
+
+    def run(measure, **thresholds):
+        return measure(Evidence(pair=pair, thresholds=thresholds))
+
+    return run
+
+
+def of(*values, names=LUBRICANT):
+    return dict(zip(names, values, strict=True))
+
+
+def test_the_checks_belong_to_variants_of_tab_1():
+    assert tuple(fig2.LUBRICANT) == LUBRICANT
+    assert ["b-lubricant", *LUBRICANT] == fig2.ALL_LUBRICANT
+    assert [name[0] for name in fig2.IN_MATERIAL] == [*"ccddhh"]
+
+
+def test_fig_2_steps_differences_and_jumps(measured):
+    steps = {name: {"nu": 0.7, "step": 0.1 * i} for i, name in enumerate(fig2.IN_MATERIAL)}
+    found, detail = measured(fig2.continuous_curves, largest_step=steps)
+    assert found == {name: 0.1 * i for i, name in enumerate(fig2.IN_MATERIAL)}
+    assert "in y_st" in detail
+    differences = of(0.1, 0.2, None, names="cdh")
+    found, detail = measured(fig2.material_or_both, material_or_both=differences)
+    assert (found["c"], found["d"]) == (0.1, 0.2) and math.isnan(found["h"]) and detail
+    first, second = (of(*at, names=fig2.ALL_LUBRICANT) for at in ((1, 2, 3, 4), (5, 6, 7, 8)))
+    found, detail = measured(fig2.jump_frequencies, first_jump=first, second_jump=second)
+    assert found == {"near 0.66": first, "near 0.8": second} and detail
+    found, detail = measured(
+        fig2.agreement_between_jumps, course_spread={"below": 0.1, "above": 0.4}
+    )
+    assert found == {"ratio": pytest.approx(0.25), "below": 0.1, "above": 0.4} and detail
+
+
+def test_fig_2_peaks_inverse_mesh_and_jumps_of_the_linear_curves(measured, pair):
+    peaks = {name: {"nu": nu, "y_max": 3.0} for name, nu in of(0.77, 0.80, 0.82).items()}
+    _, detail = measured(fig2.rounded_peaks, peak=peaks, second_jump=of(0.7, 0.7, 0.7))
+    assert detail == "distances in ν_s; peaks at c 0.770, d 0.800, h 0.820"
+    backlash = pair.backlash / pair.static_deflection
+    found, detail = measured(fig2.no_inverse_mesh, lowest=of(-1.0, -2.0, 0.5))
+    assert found == pytest.approx(of(backlash - 1.0, backlash - 2.0, backlash + 0.5)) and detail
+    jumps = {"b-material": [{"nu": 0.9}, {"nu": 0.7}], "b-both": []}
+    found, detail = measured(fig2.linear_jumps, jumps=jumps)
+    assert found == {"b-material": 2, "b-both": 0}
+    assert detail == "number of jumps; at ν_s 0.700, 0.900"
+    _, detail = measured(fig2.linear_jumps, jumps={"b-material": [], "b-both": []})
+    assert detail == "number of jumps; at ν_s none"
+
+
+def test_fig_3(measured):
+    maxima, minima = of(1.1, 1.2, 1.3), of(1.0, 1.1, 1.2)
+    found, detail = measured(fig3.bifurcation_onset, onset_maxima=maxima, onset_minima=minima)
+    assert found == {"y_max": maxima, "y_min": minima} and detail
+    found, detail = measured(fig3.contact_loss, lowest=of(-1.0, -2.0, -3.0))
+    assert found == of(-1.0, -2.0, -3.0) and detail
+    spreads = {name: {"below": b, "above": 4.0} for name, b in of(1.0, 2.0, 6.0).items()}
+    found, detail = measured(fig3.order_below, maxima_spread=spreads)
+    assert found == {"ratio": of(0.25, 0.5, 1.5), "below": of(1.0, 2.0, 6.0)} and detail
+    bands = {name: {"smooth": s, "growth": 9.0, "more": 1} for name, s in of(1.0, 2.0, 3.0).items()}
+    found, detail = measured(fig3.orderly_bands, band=bands)
+    assert found == {"smooth": of(1.0, 2.0, 3.0), "growth": of(9.0, 9.0, 9.0)}
+    assert "y_st" in detail
+    gained = {name: {"first": f, "second": 2 * f} for name, f in of(0.1, 0.2, 0.3).items()}
+    found, detail = measured(fig3.loss_at_jumps, loss_gained=gained)
+    assert found == {"first": of(0.1, 0.2, 0.3), "second": of(0.2, 0.4, 0.6)} and detail
+    found, detail = measured(fig3.orderly_decline, largest_rise=of(0.1, 0.2, 0.3))
+    assert found == of(0.1, 0.2, 0.3) and detail
+    found, detail = measured(
+        fig3.further_branches,
+        turning_points_before={"c-material": 4.0},
+        loop_end={"c-material": 0.64},
+    )
+    assert found == {"end": 0.64, "turning points before": 4.0} and detail
+
+
+def test_fig_4(measured, pair):
+    spread = {"0.60": 0.3, "1.05": None, "1.20": 0.5}
+    found, detail = measured(fig4.stroboscopic_spread, strobe_spread={"c-lubricant": spread})
+    assert (found["0.60"], found["1.20"]) == (0.3, 0.5) and math.isnan(found["1.05"]) and detail
+    found, detail = measured(
+        fig4.bifurcation_is_heterodyne,
+        onset_strobes=of(1.1, 1.2, 1.3),
+        onset_maxima=of(1.15, 1.1, 1.3),
+    )
+    assert found == pytest.approx(of(0.05, 0.1, 0.0)) and detail
+    turned = fig4.by_quantity({"0.60": {"a": 1, "b": 2}, "1.05": {"a": 3, "b": 4}})
+    assert turned == {"a": {"0.60": 1, "1.05": 3}, "b": {"0.60": 2, "1.05": 4}}
+
+
+def test_figs_5_and_6(measured):
+    found, detail = measured(
+        fig5.loops_vanish,
+        turning_points_before={"c-material": 4.0},
+        turning_points_beyond={"c-material": 2.0},
+        loop_end={"c-material": 0.6412345},
+    )
+    assert found == {"before": 4.0, "beyond": 2.0}
+    assert detail.endswith("ν_s = 0.6412")
+    place = {"c-material": 0.2945, "c-material-5x": 0.6855}
+    for measure, distance in ((fig5.loops_melt, 0.01), (fig6.corner_of_more_damped, 0.03)):
+        found, detail = measured(measure, loop_place=place)
+        assert found == pytest.approx(distance) and detail
+    # The distance goes the short way round, and the switches are those of the contact ratio.
+    found, _ = measured(fig5.loops_melt, loop_place={"c-material": 0.2845 - 1.01})
+    assert found == pytest.approx(0.01)
+    ends = {"c-material": 0.64, "c-material-5x": 0.61}
+    found, detail = measured(fig6.loop_ends, loop_end=ends)
+    assert found == {"k": 0.64, "5k": 0.61, "lead of 5k": pytest.approx(0.03)} and detail
+
+
+@pytest.mark.parametrize(
+    ("intervals", "nearest"),
+    [
+        ([[0.55, 0.60], [0.64, 0.7]], (0.55, 0.60)),
+        ([[0.55, 0.57], [0.64, 0.7]], (0.64, 0.7)),
+        ([[0.5, 0.55], [0.6, 0.62], [0.611, 0.7]], (0.6, 0.62)),
+    ],
+)
+def test_the_interval_of_exceedance_is_the_nearest_one(measured, intervals, nearest):
+    found, detail = measured(fig6.more_damped_exceeds, exceedance={"c-material-5x": intervals})
+    assert (found["from"], found["to"]) == nearest and detail
+    found, _ = measured(fig6.more_damped_exceeds, exceedance={"c-material-5x": []})
+    assert math.isnan(found["from"]) and math.isnan(found["to"])
+
+
+def sampled(pair, **fields):
+    """Make up four mesh periods of 100 samples."""
+    phase = np.arange(400) / 100 + 0.005
+    double = np.abs(phase - np.round(phase)) < 0.2845
+    made = {
+        "time": (phase - pair.initial_phase) * 3.0,
+        "y_rel": 1.0 + 0.1 * np.cos(2 * np.pi * phase),
+        "stiffness": np.where(double, pair.mesh_stiffness_max, pair.stiffness_min),
+        "regime": np.ones(phase.size, int),
+        "force_friction": np.where(
+            double, 0.1 * (phase % 1 < 0.5), np.where(phase % 1 < 0.5, 2.0, -2.0)
+        ),
+    } | fields
+    if "a_rel" not in made:
+        heavy = 1 + 2 * pair.reduced_mass / pair.body_mass
+        made["a_rel"] = -heavy * made["stiffness"] / pair.stiffness_mean * made["y_rel"]
+    data = {name: ("sample", value) for name, value in made.items()}
+    return xr.Dataset(data | {"mesh_period": ((), 3.0)})
+
+
+def test_corners_follow_their_definition(pair):
+    """A jump is the change between two samples minus the mean of the changes around it."""
+    plain = sampled(pair)
+    bodies = pair.replace(body_mass=["20 kg", "60 kg"])
+    mobility = {pair: 1 + 2 * pair.reduced_mass / pair.body_mass}
+    mobility[bodies] = 1 + pair.reduced_mass / 20 + pair.reduced_mass / 60
+    extra = np.zeros(400)
+    extra[250:] = 0.4  # in the middle of single contact
+    case = plain.assign(a_rel=plain["a_rel"] + extra)
+    a, c, y = (case[name].values for name in ("a_rel", "stiffness", "y_rel"))
+    switches = [i for i in range(1, 398) if c[i + 1] != c[i]]
+    jump = {
+        i: a[i + 1] - a[i] - 0.5 * (a[i] - a[i - 1] + a[i + 2] - a[i + 1]) for i in range(1, 398)
+    }
+    near = {i + d for i in switches for d in (-1, 0, 1)}
+    for one, share in mobility.items():
+        caused = {
+            i: -share * (c[i + 1] - c[i]) / one.stiffness_mean * 0.5 * (y[i] + y[i + 1])
+            for i in switches
+        }
+        ratio = sum(jump[i] * np.sign(caused[i]) for i in switches)
+        ratio /= sum(abs(value) for value in caused.values())
+        found = fig4.corners(case, Evidence(pair=one))
+        assert found["at the switches"] == pytest.approx(ratio)
+        greatest = max(abs(jump[i]) for i in jump if i not in near)
+        median = np.median([abs(jump[i]) for i in switches])
+        assert found["elsewhere"] == pytest.approx(greatest / median)
+        assert found["elsewhere"] > 0.1
+
+
+def test_corners_need_a_switch_and_a_place_elsewhere_in_mesh(pair):
+    evidence = Evidence(pair=pair)
+    for regime in (np.zeros(400, int), -np.ones(400, int)):
+        assert all(
+            math.isnan(v) for v in fig4.corners(sampled(pair, regime=regime), evidence).values()
+        )
+    # Meshing in the four samples around one switch only: nothing elsewhere.
+    regime = np.zeros(400, int)
+    regime[26:30] = 1
+    found = fig4.corners(sampled(pair, regime=regime), evidence)
+    assert math.isnan(found["at the switches"]) and math.isnan(found["elsewhere"])
+
+
+def test_corners_of_the_three_frequencies(pair):
+    case = sampled(pair)
+    courses = {("c-lubricant", nu): case for nu in (0.60, 1.05, 1.20)}
+    found, detail = fig4.phase_plane_corners(Evidence(pair=pair, time_courses=courses))
+    assert [*found] == ["at the switches", "elsewhere"]
+    assert [*found["elsewhere"]] == ["0.60", "1.05", "1.20"]
+    assert detail
+
+
+def of_both(case, other=None):
+    return {("c-material", 0.61): case, ("c-material-5x", 0.61): case if other is None else other}
+
+
+def test_friction_is_measured_within_double_contact(pair):
+    case = sampled(pair)
+    found, detail = fig7.friction_sense(Evidence(pair=pair, time_courses=of_both(case)))
+    assert found["in double contact"]["c-material"] == pytest.approx(0.05)
+    assert found["phase of the change"]["c-material-5x"] == pytest.approx(0.495)
+    assert detail
+    # The outermost samples of double contact do not count; the next ones do.
+    force = case["force_friction"].values.copy()
+    double = np.flatnonzero(case["stiffness"].values == pair.mesh_stiffness_max)
+    edges = [i for i in double if not {i - 1, i + 1} <= {*double} and 0 < i < 399]
+    force[edges] = 1.5
+    case["force_friction"] = ("sample", force)
+    found, _ = fig7.friction_sense(Evidence(pair=pair, time_courses=of_both(case)))
+    assert found["in double contact"]["c-material"] == pytest.approx(0.05)
+    force[edges[0] - 1] = force[edges[1] + 1] = 1.0
+    case["force_friction"] = ("sample", force)
+    found, _ = fig7.friction_sense(Evidence(pair=pair, time_courses=of_both(case)))
+    assert found["in double contact"]["c-material"] == pytest.approx(0.5)
+    case["force_friction"] = ("sample", np.zeros(400))
+    found, _ = fig7.friction_sense(Evidence(pair=pair, time_courses=of_both(case)))
+    assert math.isnan(found["in double contact"]["c-material"])
+    assert math.isnan(found["phase of the change"]["c-material"])
+
+
+def test_the_phase_counts_from_the_middle_of_the_pulse(pair):
+    case = sampled(pair)
+    for one in (pair, pair.replace(initial_phase=0.25)):
+        expected = (case["time"].values / 3.0 + one.initial_phase) % 1.0
+        found = fig7.mesh_phase(case, Evidence(pair=one))
+        np.testing.assert_allclose(found, expected, atol=1e-12)
+
+
+def test_jumps_of_acceleration_and_the_shift_of_phase(pair):
+    one = sampled(pair)
+    phase = np.arange(400) / 100 + 0.005
+    other = sampled(pair, y_rel=np.cos(2 * np.pi * phase - np.radians(30.0)))
+    evidence = Evidence(pair=pair, time_courses=of_both(one, other))
+    found, detail = fig7.jumps_of_acceleration(evidence)
+    expected = fig4.corners(other, evidence)["elsewhere"]
+    assert found["elsewhere"]["c-material-5x"] == pytest.approx(expected) and detail
+    found, detail = fig7.phase_shift(evidence)
+    assert found["shift"] == pytest.approx(30.0)
+    assert detail.endswith("c-material 0.0°, c-material-5x 30.0°") or "360.0°" in detail
+    # The other way round, and beyond half a turn.
+    found, _ = fig7.phase_shift(Evidence(pair=pair, time_courses=of_both(other, one)))
+    assert found["shift"] == pytest.approx(30.0)
+    far = sampled(pair, y_rel=np.cos(2 * np.pi * phase - np.radians(230.0)))
+    found, _ = fig7.phase_shift(Evidence(pair=pair, time_courses=of_both(one, far)))
+    assert found["shift"] == pytest.approx(130.0)
+
+
+def test_the_height_of_a_loop_is_the_least_difference_of_neighbouring_extrema(pair):
+    def case(extrema, turning):
+        return xr.Dataset(
+            {"extremum_y_rel": ("extremum", extrema), "turning_points_per_period": ((), turning)}
+        )
+
+    looped = case([1.0, 2.0, 1.75, 3.0], 4.0)
+    assert fig7.loop_height(looped) == pytest.approx(0.25)
+    assert fig7.loop_height(case([1.0, 2.0, 1.75], 3.0)) == pytest.approx(0.25)
+    assert fig7.loop_height(case([1.0, 2.0, 1.75], 2.0)) == 0.0
+    courses = of_both(looped, case([1.0, 2.0, 1.5], 4.0))
+    courses = {key: value.assign(y_rel=("sample", [1.0])) for key, value in courses.items()}
+    found, detail = fig7.loop_depends_on_damping(Evidence(pair=pair, time_courses=courses))
+    assert found == {"5k to k": 2.0, "c-material": 0.25, "c-material-5x": 0.5} and detail
+
+
+def test_evidence_is_found_by_name_and_by_frequency(pair):
+    empty = xr.Dataset({"y_max": ((), 1.0)})
+    full = sampled(pair)
+    evidence = Evidence(
+        pair=pair,
+        thresholds={"there": {"a": [1.0, None, {"b": None}], "d": 2.0}},
+        time_courses={("a", 0.6): empty, ("b", 0.61): full, ("a", 0.61): full},
+    )
+    assert evidence.time_course("a", 0.61 + 5e-10) is full
+    for name, nu in (("a", 0.6), ("a", 0.61 + 2e-9), ("a", 0.61 - 2e-9), ("c", 0.61)):
+        with pytest.raises(NotInStudy, match=f"time course of {name} at"):
+            evidence.time_course(name, nu)
+    found = evidence.located("there", iter(["a"]))
+    assert found["a"][0] == 1.0 and math.isnan(found["a"][1]) and math.isnan(found["a"][2]["b"])
+    with pytest.raises(NotInStudy, match="there of b, c"):
+        evidence.located("there", ["a", "b", "c"])
+    with pytest.raises(NotInStudy, match="elsewhere of a"):
+        evidence.located("elsewhere", ["a"])
+
+
+def test_printed_numbers_by_hand(pair):
+    evidence = Evidence(pair=pair)
+    c_max, c_min = 4e5, 0.5879 * 4e5
+    c_s = 0.569 * c_max + 0.431 * c_min
+    value, detail = printed.mean_stiffness(evidence)
+    assert value == pytest.approx(c_s) and detail
+    value, detail = printed.least_stiffness(evidence)
+    assert value == pytest.approx(c_min) and detail
+    ratios, detail = printed.damping_ratios(evidence)
+    ratio = 3.9537 / (2.0 * math.sqrt(c_s * 3.123e-3))
+    assert ratios["D"] == pytest.approx(ratio, rel=1e-4) and detail
+    assert ratios["D of 5k"] == pytest.approx(5 * ratios["D"])
+    assert ratios["5k"] == pytest.approx(5 * ratios["k"])
+    levels, detail = printed.frequencies_of_the_levels(evidence)
+    assert levels["nu_min"] == pytest.approx(0.66 * math.sqrt(c_s / c_min)) and detail
+    assert levels["nu_max"] == pytest.approx(0.66 * math.sqrt(c_s / c_max))
+    value, detail = printed.resonance_of_least_stiffness(evidence)
+    assert value == pytest.approx(math.sqrt(c_min / c_s)) and detail
+
+
+@pytest.mark.parametrize("teeth", [21, 40])
+def test_the_standard_contact_ratio_by_hand(pair, teeth):
+    """Two thirds of a wheel of module 2: the mesh line between both tip circles."""
+    alpha = pair.pressure_angle
+    pitch, tip = teeth, teeth + 2
+    half = math.sqrt(tip**2 - (pitch * math.cos(alpha)) ** 2) - pitch * math.sin(alpha)
+    expected = 2.0 * half / (2.0 * math.pi * math.cos(alpha))
+    value, detail = printed.standard_contact_ratio(Evidence(pair=pair.replace(teeth=teeth)))
+    assert value == pytest.approx(expected, rel=1e-12)
+    assert f"R_b = {teeth * math.cos(alpha) / 2:.4f} modules" in detail
+    assert "20°" in detail
+
+
+def test_the_coefficients_are_compared_with_those_of_the_wave(pair, monkeypatch):
+    evidence = Evidence(pair=pair)
+    values, detail = printed.rectangular_wave(evidence)
+    assert values["share of C_max"] == pytest.approx(0.569)
+    assert values["difference"] < 1e-14
+    assert detail.startswith("first 50 coefficients")
+    n = np.arange(1, 51)
+    wave = 2 * (1 - 0.5879) * 4e5 * np.sin(n * np.pi * 0.569) / (n * np.pi)
+    for number in (0, 49):
+        wrong = wave.copy()
+        wrong[number] += 4e3
+        monkeypatch.setattr(printed.stiffness, "fourier_amplitudes", lambda *_, wrong=wrong: wrong)
+        assert printed.rectangular_wave(evidence)[0]["difference"] == pytest.approx(0.01)
+    counts = []
+    monkeypatch.setattr(
+        printed.stiffness, "fourier_amplitudes", lambda *a: counts.append(a[-1]) or wave
+    )
+    printed.rectangular_wave(evidence)
+    assert counts == [50]
+
+
+@pytest.mark.parametrize("nu", [0.6, 0.66, 1.1])
+@pytest.mark.parametrize("ratio", [0.0, 0.01])
+def test_the_trace_is_that_of_the_exponential_map(pair, nu, ratio):
+    """The factor of the decay, exp(-zeta T), is left out of it."""
+    period = 2 * math.pi / nu
+    total = np.eye(2)
+    for share, level in ((0.569, pair.mesh_stiffness_max), (0.431, pair.stiffness_min)):
+        rate = np.array([[0.0, 1.0], [-level / pair.stiffness_mean, -2.0 * ratio]])
+        total = expm(rate * share * period) @ total
+    expected = np.trace(total) * math.exp(ratio * period)
+    assert printed._trace(nu, ratio, pair) == pytest.approx(expected, rel=1e-9)
+
+
+def test_a_root_is_where_the_sign_changes():
+    assert printed._root(lambda x: x - 0.3, 0.0, 1.0) == pytest.approx(0.3, abs=1e-7)
+    assert printed._root(lambda x: 0.3 - x, 0.0, 1.0) == pytest.approx(0.3, abs=1e-7)
+    for constant in (1.0, -1.0):
+        assert math.isnan(printed._root(lambda x, c=constant: c, 0.0, 1.0))
+    assert math.isnan(printed._root(lambda x: x, 0.0, 1.0))
+
+
+def test_the_parametric_tongue_is_where_the_multipliers_leave_the_unit_circle(pair):
+    """By the eigenvalues of the map over a period, with damping as well."""
+    values, detail = printed.parametric_tongue(Evidence(pair=pair))
+    assert (values["from"], values["to"]) == pytest.approx((0.65562, 0.66734), abs=1e-5)
+    assert values["damping ratio"] == pytest.approx(0.0089, abs=5e-5)
+    assert detail
+
+    def greatest_growth(ratio):
+        found = []
+        for nu in np.linspace(values["from"], values["to"], 41):
+            total = np.eye(2)
+            for share, level in ((0.569, pair.mesh_stiffness_max), (0.431, pair.stiffness_min)):
+                rate = np.array([[0.0, 1.0], [-level / pair.stiffness_mean, -2.0 * ratio]])
+                total = expm(rate * share * 2 * math.pi / nu) @ total
+            found.append(np.abs(np.linalg.eigvals(total)).max())
+        return max(found)
+
+    assert greatest_growth(0.98 * values["damping ratio"]) > 1.0
+    assert greatest_growth(1.02 * values["damping ratio"]) < 1.0
+
+
+@dataclass
+class Run:
+    """What P9 reads of a run."""
+
+    y_max: float
+    y_min: float
+
+
+def test_constant_coefficients_are_run_without_friction(pair, monkeypatch):
+    asked = []
+
+    def simulate(problems, tolerance):
+        asked.extend(problems)
+        assert tolerance == pair.tolerance
+        return [Run(1.0 + problems[0].contact_ratio, 1.0)]
+
+    monkeypatch.setattr(printed, "simulate", simulate)
+    found, detail = printed.constant_coefficients(Evidence(pair=pair))
+    assert found == {"ε = 1": 1.0, "ε = 2": 2.0} and detail
+    assert [(p.contact_ratio, p.friction_coefficient, p.nu) for p in asked] == [
+        *((1.0, 0.0, 0.66), (2.0, 0.0, 0.66)),
+    ]
+    assert all(p.material[1] > 0.0 for p in asked)
+
+
+def claim(**changes):
+    fields = {
+        "id": "F2.1",
+        "where": "Fig. 2",
+        "figure": "fig2",
+        "statement": "It is so.",
+        "kind": "shape",
+        "expected": {"at_most": 1.0},
+    }
+    return Claim(**{**fields, **changes})
+
+
+def test_bounds_hold_on_either_side():
+    assert (Bound(at_least=1.0).at_least, Bound(at_least=1.0).at_most) == (1.0, None)
+    Bound(at_least=1.0, at_most=1.0)
+    for low, high in ((None, None), (1.1, 1.0)):
+        with pytest.raises(ValueError, match="at_least"):
+            Bound(at_least=low, at_most=high)
+    above, below = claim(expected={"at_least": 1.0}), claim(expected={"at_most": 1.0})
+    for value, is_above, is_below in ((0.9, False, True), (1.0, True, True), (1.1, True, False)):
+        assert (holds(above, value), holds(below, value)) == (is_above, is_below)
+    assert holds(above, 1e9) and holds(below, -1e9)
+    assert not holds(below, -math.inf)
+
+
+def test_a_value_at_the_limit_of_its_tolerance_holds_in_spite_of_rounding():
+    one = claim(expected=1.0, tolerance=0.1)
+    assert holds(one, 1.1 + 5e-11) and holds(one, 0.9 - 5e-11)
+    assert not holds(one, 1.1 + 1e-9) and not holds(one, 0.9 - 1e-9)
+    assert holds(claim(expected=1.0, tolerance=0.0), 1.0)
+    assert not holds(claim(expected=1.0, tolerance=0.0), 1.0 + 1e-12)
+
+
+@pytest.mark.parametrize("tolerance", [-1.0, math.inf, math.nan])
+def test_a_tolerance_is_a_finite_number_from_0_on(tolerance):
+    with pytest.raises(ValueError, match="tolerance: found"):
+        claim(expected=1.0, tolerance=tolerance)
+
+
+def test_the_targets_of_a_claim_and_their_tolerances():
+    assert claim().targets() == [("", Bound(at_most=1.0), None)]
+    assert claim(expected=2, tolerance=0.1).targets() == [("", 2.0, 0.1)]
+    mixed = claim(expected={"a": 1.0, "b": {"at_least": 2}}, tolerance=0.1)
+    assert mixed.targets() == [("a", 1.0, 0.1), ("b", Bound(at_least=2.0), None)]
+    each = claim(expected={"a": 1.0, "b": 2.0}, tolerance={"a": 0.1, "b": 0.2})
+    assert each.targets() == [("a", 1.0, 0.1), ("b", 2.0, 0.2)]
+    for wrong in ({"expected": {"at_most": 1.0}, "tolerance": 0.1}, {"expected": 1.0}):
+        with pytest.raises(ValueError, match="needed for expected numbers"):
+            claim(**wrong)
+    with pytest.raises(ValueError, match="of 'b'"):
+        claim(expected={"a": 1.0, "b": 2.0}, tolerance={"a": 0.1})
+
+
+def entry(name="F2.1", status=REPRODUCED, **changes):
+    return Entry(**claim(id=name).model_dump(), status=status, **changes)
+
+
+def test_an_entry_is_unexpected_if_it_is_judged_and_has_another_status():
+    assert not entry().unexpected
+    assert entry(status=DEVIATES).unexpected
+    assert not entry(status=DEVIATES, judged=False).unexpected
+
+
+def test_an_entry_as_json_has_six_digits_and_no_empty_options(tmp_path):
+    made = entry(measured={"a": (0.123456789, math.inf), "b": [True, 12345678, None]})
+    stored = made.as_json()
+    assert stored["measured"] == {"a": [0.123457, None], "b": [True, 12345678, None]}
+    assert not {"quote", "tolerance_reason", "reason", "mechanism"} & stored.keys()
+    assert stored["tolerance"] is None and stored["judged"] is True
+    quoted = entry(mechanism="orbit").model_copy(update={"quote": "so"})
+    assert (quoted.as_json()["quote"], quoted.as_json()["mechanism"]) == ("so", "orbit")
+    write_entries(tmp_path / "one.json", [made])
+    assert json.loads((tmp_path / "one.json").read_text("utf-8")) == [stored]
+    assert (tmp_path / "one.json").read_text("utf-8").startswith('[\n {\n  "id"')
+
+
+def test_checks_come_together_with_their_mechanisms(tmp_path):
+    write_entries(tmp_path / "a.json", [entry("F2.1"), entry("F2.2", DEVIATES, judged=False)])
+    known = [claim(id=name) for name in ("F2.2", "F2.1", "F2.3")]
+    found = collect(known, [tmp_path / "a.json"], tmp_path / "all.json", {"F2.1": "an orbit"})
+    assert [(one.id, one.mechanism) for one in found] == [
+        *(("F2.2", None), ("F2.1", "an orbit"), ("F2.3", None)),
+    ]
+    assert [one.status for one in found] == [DEVIATES, REPRODUCED, NOT_TESTABLE]
+    assert found[2].judged and found[2].detail == "was not checked"
+    assert read_entries(tmp_path / "all.json") == found
+    counted = verdict(iter(found))
+    assert (counted.reproduced, counted.deviates, counted.not_testable) == (1, 1, 1)
+    assert [one.id for one in counted.unexpected] == ["F2.3"]
+    (tmp_path / "wrong.json").write_text('{"id": 1}')
+    with pytest.raises(InputError, match="allowed is a list of checked claims"):
+        read_entries(tmp_path / "wrong.json")
+
+
+def test_a_figure_is_checked_claim_by_claim(tmp_path, monkeypatch, pair):
+    monkeypatch.setattr(checking, "MEASURES", {"F2.1": lambda _: (0.5, "half"), "F3.1": None})
+    claims = [claim(id="F3.1", figure="fig3"), claim()]
+    output = tmp_path / "fig2.json"
+    found = checking.check_figure("fig2", Evidence(pair=pair), claims, output)
+    assert [(one.id, one.status, one.detail) for one in found] == [("F2.1", REPRODUCED, "half")]
+    assert read_entries(output) == found
+    with pytest.raises(InputError, match=r"F2\.9: no such check; known are F2\.1, F3\.1"):
+        checking.check(claim(id="F2.9"), Evidence(pair=pair))
+
+
+def test_a_ledger_keeps_the_order_of_its_file(tmp_path):
+    path = tmp_path / "claims.yaml"
+    text = "where: x, figure: fig2, statement: x, kind: shape, expected: {at_most: 1}"
+    path.write_text(f"F2.2: {{{text}}}\nF2.1: {{{text}}}\n")
+    assert [one.id for one in load_ledger(path)] == ["F2.2", "F2.1"]

@@ -1,0 +1,92 @@
+"""Runs of Snakemake as processes of their own, which start without importing it anew.
+
+To import Snakemake takes longer than to plan a study. A server has imported it, with the packages
+that the Snakefile needs, and nothing of gearmesh. Each run is a fork of that server with its own
+folder, environment and process group. It imports gearmesh from the copied project.
+"""
+
+import contextlib
+import multiprocessing
+import os
+import runpy
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+from collections.abc import Callable, Mapping, Sequence
+from pathlib import Path
+
+SERVER = multiprocessing.get_context("forkserver")
+SERVER.set_forkserver_preload(
+    [
+        *("snakemake.cli", "snakemake.report.html_reporter", "snakemake.storage"),
+        *("docutils.core", "jinja2", "pydantic", "requests", "scipy.io", "yte"),
+    ]
+)
+PATIENCE = 280
+"""Seconds after which a run hangs."""
+
+
+class Run:
+    """A run of Snakemake.
+
+    Parameters
+    ----------
+    folder : Path
+        Where it runs.
+    environment : mapping
+        Its environment variables; `PYTHONPATH` is where its modules come from.
+    arguments : sequence of str
+        Its command line.
+    """
+
+    def __init__(
+        self, folder: Path, environment: Mapping[str, str], arguments: Sequence[str]
+    ) -> None:
+        self._output = tempfile.NamedTemporaryFile("r", encoding="utf-8")  # noqa: SIM115
+        given = (folder, dict(environment), arguments, self._output.name)
+        self._process = SERVER.Process(target=_snakemake, args=given)
+        self._process.start()
+
+    def wait_for(self, condition: Callable[[], object]) -> object:
+        """Wait until something is there, or the run is over; return what is there."""
+        while self._process.is_alive():
+            if found := condition():
+                return found
+            time.sleep(0.01)
+        return condition()
+
+    def send(self, how: signal.Signals, to_all: bool = True) -> None:
+        """Send a signal to the run, and to all that it started; it may be over already."""
+        send = os.killpg if to_all else os.kill
+        with contextlib.suppress(ProcessLookupError):
+            send(self._process.pid, how)
+
+    def wait(self) -> subprocess.CompletedProcess[str]:
+        """Wait for the end of the run, and return its status with what it printed."""
+        self._process.join(PATIENCE)
+        if self._process.exitcode is None:
+            self.send(signal.SIGKILL)
+            raise TimeoutError(self._output.read())
+        return subprocess.CompletedProcess(
+            self._process.name, self._process.exitcode, self._output.read()
+        )
+
+
+def _snakemake(
+    folder: Path, environment: Mapping[str, str], arguments: Sequence[str], output: str
+) -> None:
+    os.setsid()
+    # What runs the tests in the background ignores SIGINT, and its children would too.
+    signal.signal(signal.SIGINT, signal.default_int_handler)
+    os.chdir(folder)
+    os.environ.clear()
+    os.environ.update(environment)
+    printed = os.open(output, os.O_WRONLY | os.O_APPEND)
+    for stream in (sys.stdout, sys.stderr):
+        os.dup2(printed, stream.fileno())
+    sys.path[:0] = [str(folder), *environment["PYTHONPATH"].split(os.pathsep)]
+    sys.dont_write_bytecode = False  # the server has it from whoever runs the tests
+    sys.argv = ["snakemake", *arguments]
+    runpy.run_module("snakemake", run_name="__main__")
