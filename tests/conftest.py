@@ -30,15 +30,15 @@ SLOW = (
 """Beginnings of the paths of tests that `make test-fast` leaves out."""
 
 
-LONGEST = ("workflow", "docs/test_printed", "identification/test_samples", "solvers")
-"""Those that take longest start first, so that no process has to wait for another at the end."""
+FIRST = ("workflow", "solvers")
+"""Those that take longest, and compile; started last, they would keep one process alone busy."""
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
     for item in items:
         if _place(item).startswith(SLOW):
             item.add_marker(pytest.mark.slow)
-    items.sort(key=lambda item: not _place(item).startswith(LONGEST))
+    items.sort(key=lambda item: not _place(item).startswith(FIRST))
 
 
 def _place(item: pytest.Item) -> str:

@@ -34,12 +34,10 @@ time_courses: null
 
 @functools.cache
 def compile_solvers() -> None:
-    """Compile all that the solvers run, so that no copy of the project has to."""
+    """Compile what the studies here run, so that no copy of the project has to."""
     pair = gm.paper()
-    run_out = pair.replace(eccentricity="5 um")
     simulate([pair.problem(variant("c-both"), 0.7)], estimate_errors=False)
     gm.simulate(pair, "c-both", 0.7)
-    gm.simulate(run_out, "c-both", 0.7, revolutions=1)
     gm.find_orbit(pair, "c-lubricant", 0.9)
 
 

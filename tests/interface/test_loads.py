@@ -69,12 +69,13 @@ def test_the_scalars_are_those_of_the_waves(wavy, run):
     angle = np.linspace(0, 2 * np.pi, 100_000)[:, None] * [1, 2]
     wave = 1 + np.real(normal * np.exp(1j * angle)).sum(axis=1)
     error = np.real(u * np.exp(1j * angle)).sum(axis=1)
-    assert float(run.dynamic_factor) == pytest.approx(wave.max(), rel=1e-4)
+    assert float(run.dynamic_factor) == pytest.approx(wave.max(), rel=1e-6)
     assert float(run.force_max) == float(run.dynamic_factor) * wavy.static_force
-    assert float(run.force_min) / wavy.static_force == pytest.approx(wave.min(), rel=1e-4)
+    assert float(run.force_min) / wavy.static_force == pytest.approx(wave.min(), rel=1e-6)
     assert float(run.transmission_error_rms_rel) == pytest.approx(error.std(), rel=1e-4)
-    assert float(run.transmission_error_range_rel) == pytest.approx(np.ptp(error), rel=1e-4)
-    assert float(run.force_bearing_3_max) == np.abs(run.force_bearing_3).max()
+    assert float(run.transmission_error_range_rel) == pytest.approx(np.ptp(error), rel=1e-6)
+    sampled = float(np.abs(run.force_bearing_3).max())
+    assert sampled <= float(run.force_bearing_3_max) < sampled * (1 + 1e-3)
 
 
 @pytest.mark.parametrize(("name", "nu"), [("g-both", 0.9), ("c-lubricant", 0.85)])
@@ -85,7 +86,7 @@ def test_both_solvers_agree_on_the_loads(pair, name, nu):
         one, other = (getattr(response.samples, force) for response in (fast, general))
         assert one == pytest.approx(other, abs=1e-7)
     one, other = (loads(problem, response.samples) for response in (fast, general))
-    assert one.force_max == pytest.approx(other.force_max, abs=1e-7)
+    assert one.force_max == pytest.approx(other.force_max, abs=1e-5)
 
 
 def test_extremes_at_jumps_do_not_depend_on_the_samples(pair):

@@ -1,10 +1,8 @@
-"""The fast solver against SciPy's DOP853 on the six equations of motion, over two revolutions.
-
-`test_peers` compares runs of five revolutions with heyoka.
+"""The fast solver against SciPy's DOP853 on the six equations of motion, over one revolution.
 
 The two share the statement of the problem and nothing else: other coordinates, another method,
-other ways to find events. Every letter of Tab. 1, every symbol, grazing, back-flank contact,
-friction and stiff supports are among the cases.
+other ways to find events. Every letter of Tab. 1, every symbol, back-flank contact, friction and
+stiff supports are among the cases. `test_peers` compares longer runs with heyoka, and grazing.
 """
 
 import numpy as np
@@ -14,10 +12,7 @@ from problems import problem
 
 from gearmesh.solvers.simulation import simulate
 
-SHALLOW = ("c-lubricant", 0.639)
-"""Dips below y = 0 by 0.0024, once."""
-
-LENGTH = {"revolutions": 2}
+LENGTH = {"revolutions": 1}
 
 CASES = [
     ("a-conservative", 1.1, {}),
@@ -25,7 +20,6 @@ CASES = [
     ("b-lubricant", 0.85, {"backlash": 0.5}),  # back flanks touch
     ("b-both", 0.9, {}),
     ("c-material", 0.61, {}),
-    (*SHALLOW, {}),
     ("c-lubricant", 0.85, {}),
     ("c-both", 1.0, {"friction_coefficient": 0.0}),
     ("d-material", 0.65, {"friction_coefficient": 0.1}),
@@ -42,9 +36,7 @@ CASES = [
 @pytest.mark.parametrize(("name", "nu", "changes"), CASES, ids=lambda case: str(case))
 def test_agrees_with_dop853_on_six_coordinates(name, nu, changes):
     case = problem(nu, name, **LENGTH, **changes)
-    # SciPy checks for events at the ends of its steps, so the steps must be shorter than the dip.
-    steps = 160 if (name, nu) == SHALLOW else 24
-    course = integrate(case, rtol=1e-12, steps_per_period=steps)
+    course = integrate(case, rtol=1e-12, steps_per_period=24)
     response = simulate([case], tolerance=1e-12)[0]
     found = np.stack([response.strobe_y, response.strobe_v], axis=1)
     np.testing.assert_allclose(found, course.strobes, atol=1e-8, rtol=0)
@@ -61,6 +53,3 @@ def test_the_cases_reach_what_they_are_for():
     }
     assert reached["b-lubricant", 0.85].inverse_mesh_fraction > 0
     assert reached["c-lubricant", 0.85].contact_loss_fraction > 0
-    shallow = reached[SHALLOW]
-    assert shallow.n_contact_losses > 0
-    assert -0.005 < shallow.y_min < 0

@@ -101,8 +101,8 @@ class Shot(Protocol):
     def shot(self, problem: Problem, state: np.ndarray, periods: int) -> Self:
         """Return another motion of the same kind; raises NoOrbit if it cannot be integrated."""
 
-    def clear_phase(self) -> float:
-        """Return a mesh phase at which the state is smooth along a curve of orbits."""
-
     def at_phase(self, phase: float) -> Self:
-        """Return the orbit with its state taken at another mesh phase."""
+        """Return the orbit with its state taken at another mesh phase.
+
+        It need not be possible where mesh periods differ.
+        """

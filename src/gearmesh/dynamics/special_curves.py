@@ -7,7 +7,7 @@ from itertools import pairwise
 import numpy as np
 
 from gearmesh.dynamics.branches import field_family
-from gearmesh.dynamics.continuation import Curve, Family, Point
+from gearmesh.dynamics.continuation import Curve, Family, Point, clear_phase
 from gearmesh.dynamics.shots import Shot
 from gearmesh.dynamics.special_points import (
     SpecialPoint,
@@ -84,7 +84,7 @@ def follow_special(
     problem = point.orbit.problem
     family = family or field_family(problem, *parameters)
     values = values or tuple(float(getattr(problem, name)) for name in parameters)
-    moved = point.orbit.at_phase(point.orbit.clear_phase())
+    moved = point.orbit.at_phase(clear_phase(point.orbit))
     units = tuple(high - low for low, high in limits)
     phase = moved.problem.initial_phase
     curve = Curve(family, moved.periods, units, phase, moved, _CONDITIONS[point.kind])
@@ -113,11 +113,11 @@ def follow_special(
 
 def _start(curve: Curve, orbit: Shot, values: tuple[float, ...]) -> Point:
     """Return the first point of a curve, the tangent towards more of the second parameter."""
-    for fixed in (5, 4):
-        normal = np.eye(6)[fixed]
-        place = np.append(orbit.state, np.divide(values, curve.units))
+    place = np.append(orbit.state, np.divide(values, curve.units))
+    directions = np.eye(place.size)
+    for fixed in (-1, -2):
         try:
-            return curve.point(place, normal, np.eye(6)[5])
+            return curve.point(place, directions[fixed], directions[-1])
         except NoOrbit as error:
             reason = error
     raise reason
@@ -125,7 +125,7 @@ def _start(curve: Curve, orbit: Shot, values: tuple[float, ...]) -> Point:
 
 def _turned_back(left: Point) -> Callable[[Point], float]:
     """Return the test for a cusp: there both parameters turn back."""
-    return lambda point: float(point.tangent[4:] @ left.tangent[4:])
+    return lambda point: float(point.tangent[-2:] @ left.tangent[-2:])
 
 
 def _least_height(level: float) -> Callable[[Shot], float]:

@@ -132,7 +132,9 @@ def follow(orbit: Orbit, parameter: str, limits: Limits) -> Branch:
     Returns
     -------
     Branch
-        Orbits along the branch, and its special points, located to 1e-8 in the parameter.
+        Orbits along the branch, and its special points, located to 1e-8 in the parameter. With
+        terms that only the general solver knows, `switching` points are not located, and a `torus`
+        closer than 1e-6 to a grazing only to 1e-7.
 
     Raises
     ------
@@ -143,7 +145,7 @@ def follow(orbit: Orbit, parameter: str, limits: Limits) -> Branch:
     """
     family, (value,) = _family(orbit, (parameter,))
     found = branches.follow(
-        orbit.reduced, parameter, _limits(orbit.pair, parameter, limits), family, value
+        orbit.found, parameter, _limits(orbit.pair, parameter, limits), family, value
     )
     return Branch(orbit, found)
 
@@ -199,7 +201,7 @@ def follow_special(
     first, second = (
         _limits(orbit.pair, name, ends) for name, ends in zip(parameters, limits, strict=True)
     )
-    bare = special_points.SpecialPoint(point.kind, point.nu, point.parameters, orbit.reduced)
+    bare = special_points.SpecialPoint(point.kind, point.nu, point.parameters, orbit.found)
     found = special_curves.follow_special(bare, parameters, (first, second), family, values)
     return SpecialCurve(point, found)
 
@@ -230,7 +232,7 @@ def _family(orbit: Orbit, names: tuple[str, ...]) -> tuple[Family, tuple[float, 
         return pair.problem(orbit.variant, nu)
 
     if names == ("nu",):  # no parameter of the pair changes, so it need not be read again
-        return branches.field_family(orbit.reduced.problem, "nu"), values
+        return branches.field_family(orbit.found.problem, "nu"), values
     made: Callable[..., Problem] = problem
     return made, values
 

@@ -1,10 +1,10 @@
 """What engineers report of a run: tooth force, transmission error, bearing forces.
 
-The values are measured on the samples of the kept revolutions. The tooth force jumps where the
-rectangular stiffness switches, and where damped teeth meet or part; there, its values on both sides
-count too (not with terms of eq. (1) that the paper's examples do not use). Between samples the
-force is taken as it is, so the extremes are exact to about (2 pi order / samples per period)^2 / 8
-of the amplitude: 2e-4 for the third harmonic and 256 samples.
+The general solver locates the extremes between the samples of the kept revolutions. Those of the
+reduced one are measured on the samples. The tooth force jumps where the rectangular stiffness
+switches, and where damped teeth meet or part; there, its values on both sides count too. Elsewhere
+the extremes are then exact to about (2 pi order / samples per period)^2 / 8 of the amplitude: 2e-4
+for the third harmonic and 256 samples.
 """
 
 from dataclasses import dataclass
@@ -13,7 +13,7 @@ import numpy as np
 
 from gearmesh.model.contact import CONTACT_LOSS, elastic_force, touching_level
 from gearmesh.model.damping import damping_force
-from gearmesh.model.problem import GeneralTerms, Problem
+from gearmesh.model.problem import Problem
 from gearmesh.model.stiffness import switch_phases
 from gearmesh.solvers.response import Samples
 
@@ -33,6 +33,8 @@ class Loads:
         Its greatest value less its least.
     force_bearing_3_max, force_bearing_2_max : float
         Greatest amount of the force on the bearing of each wheel, along the mesh line.
+    force_bearing_3_z_max, force_bearing_2_z_max : float
+        The same across it; not a number in the reduced system, which does not contain it.
     """
 
     force_max: float
@@ -41,29 +43,43 @@ class Loads:
     transmission_error_range: float
     force_bearing_3_max: float
     force_bearing_2_max: float
+    force_bearing_3_z_max: float
+    force_bearing_2_z_max: float
 
 
 def loads(problem: Problem, samples: Samples) -> Loads:
     """Measure the loads of a run on its samples."""
-    force = samples.force_normal
-    if problem.terms == GeneralTerms():
-        jumps = *_at_switches(problem, samples), *_at_contacts(problem, samples)
-        force = np.concatenate([force, *jumps])
-    error = samples.transmission_error
+    extremes = samples.extremes
+    if extremes is None:
+        extremes = _on_samples(problem, samples)
+    force, error, *bearings = extremes
     return Loads(
-        force_max=float(force.max()),
-        force_min=float(force.min()),
-        transmission_error_rms=float(error.std()),
+        force_max=float(force[1]),
+        force_min=float(force[0]),
+        transmission_error_rms=float(samples.transmission_error.std()),
         transmission_error_range=float(np.ptp(error)),
-        force_bearing_3_max=float(np.abs(samples.force_bearing_3).max()),
-        force_bearing_2_max=float(np.abs(samples.force_bearing_2).max()),
+        force_bearing_3_max=float(np.abs(bearings[0]).max()),
+        force_bearing_2_max=float(np.abs(bearings[1]).max()),
+        force_bearing_3_z_max=float(np.abs(bearings[2]).max()),
+        force_bearing_2_z_max=float(np.abs(bearings[3]).max()),
     )
+
+
+def _on_samples(problem: Problem, samples: Samples) -> np.ndarray:
+    """Return the extremes as `Samples.extremes` has them, of a run of the reduced solver."""
+    jumps = *_at_switches(problem, samples), *_at_contacts(problem, samples)
+    rows = (
+        np.concatenate([samples.force_normal, *jumps]),
+        samples.transmission_error,
+        samples.force_bearing_3,
+        samples.force_bearing_2,
+    )
+    missing = [(np.nan, np.nan)] * 2
+    return np.array([*((row.min(), row.max()) for row in rows), *missing])
 
 
 def _at_switches(problem: Problem, samples: Samples) -> list[np.ndarray]:
     """Return the normal force before and after each switch of the rectangular stiffness."""
-    if problem.stiffness_harmonics:
-        return []
     places = np.flatnonzero(np.diff(samples.stiffness))
     phase = samples.time[places] / problem.period + problem.initial_phase
     waits = [(switch - phase) % 1.0 for switch in switch_phases(problem.contact_ratio)]

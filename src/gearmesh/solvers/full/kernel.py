@@ -17,7 +17,13 @@ import numpy as np
 from gearmesh.model.contact import CONTACT_LOSS, INVERSE_MESH, NORMAL_MESH, regime_of
 from gearmesh.model.motion import Z_2, Z_3
 from gearmesh.solvers.compilation import inner
-from gearmesh.solvers.full.measures import measure, record_extremum, sample, take_value
+from gearmesh.solvers.full.measures import (
+    locate_extremes,
+    measure,
+    record_extremum,
+    sample,
+    take_value,
+)
 from gearmesh.solvers.full.roots import (
     TABLE_ROWS,
     evaluate,
@@ -129,7 +135,7 @@ def _choose_step(case, series, remaining):
     step = min(remaining, case.longest_step)
     for k in range(case.order - 1, case.order + 1):
         size = abs(series[Y, k])
-        for i in range(case.coordinates):
+        for i in range(case.acting):
             size = max(size, abs(series[i, k]))
         if size > 0.0:
             # The rates have k times the terms of the coordinates, and one power of the step less.
@@ -392,6 +398,7 @@ def run(
             expand_outputs(case, mode, tape, variant, per_period > 0, series)
             measure(case, mode, series, duration, summary)
             if per_period:
+                locate_extremes(case, series, duration, summary)
                 until = segment.end if event == SEGMENT_ENDED else mode.time + duration
                 sample(case, mode, series, until, samples, per_period, summary)
         _advance(case, mode, state, series, duration)

@@ -6,8 +6,7 @@ from gearmesh.model.contact import CONTACT_LOSS, INVERSE_MESH
 from gearmesh.solvers.compilation import inner
 from gearmesh.solvers.full.roots import evaluate, evaluate_with_slope
 from gearmesh.solvers.full.tape import (
-    BEARING_2,
-    BEARING_3,
+    BEARINGS,
     FRICTION,
     NORMAL,
     STIFFNESS,
@@ -17,7 +16,17 @@ from gearmesh.solvers.full.tape import (
 )
 from gearmesh.solvers.response import MAXIMUM, MEASURED, MINIMUM
 
-SUMMARY = np.dtype([*MEASURED, ("least_contact_force", np.float64), ("samples", np.int64)])
+EXTREMAL = (NORMAL, TRANSMISSION, *BEARINGS)
+"""Rows whose least and greatest values are located where they are sampled."""
+
+SUMMARY = np.dtype(
+    [
+        *MEASURED,
+        ("least_contact_force", np.float64),
+        ("extremes", np.float64, (len(EXTREMAL), 2)),
+        ("samples", np.int64),
+    ]
+)
 """What is measured on a run, and how many samples were taken."""
 
 SAMPLE = np.dtype(
@@ -25,7 +34,8 @@ SAMPLE = np.dtype(
         (name, np.float64)
         for name in (
             *("time", "y", "v", "a", "stiffness", "friction", "regime"),
-            *("normal", "transmission_error", "bearing_3", "bearing_2"),
+            *("normal", "transmission_error"),
+            *("bearing_3", "bearing_2", "bearing_3_z", "bearing_2_z"),
         )
     ]
 )
@@ -80,8 +90,10 @@ def sample(case, mode, series, until, samples, per_period, summary):
         sample.regime = CONTACT_LOSS if mode.parted else mode.regime
         sample.normal = evaluate(series[NORMAL], degree, since)
         sample.transmission_error = evaluate(series[TRANSMISSION], degree, since)
-        sample.bearing_3 = evaluate(series[BEARING_3], degree, since)
-        sample.bearing_2 = evaluate(series[BEARING_2], degree, since)
+        sample.bearing_3 = evaluate(series[BEARINGS[0]], degree, since)
+        sample.bearing_2 = evaluate(series[BEARINGS[1]], degree, since)
+        sample.bearing_3_z = evaluate(series[BEARINGS[2]], degree, since)
+        sample.bearing_2_z = evaluate(series[BEARINGS[3]], degree, since)
         summary.samples += 1
 
 
@@ -100,6 +112,17 @@ def measure(case, mode, series, duration, summary):
     if mode.regime != CONTACT_LOSS:
         least = _least(series[NORMAL], case.order - 2, duration, mode.regime)
         summary.least_contact_force = min(summary.least_contact_force, least)
+
+
+@inner
+def locate_extremes(case, series, duration, summary):
+    """Update the least and greatest values of what is sampled."""
+    for i in range(len(EXTREMAL)):
+        row = series[EXTREMAL[i]]
+        least = _least(row, case.order - 2, duration, 1.0)
+        greatest = -_least(row, case.order - 2, duration, -1.0)
+        summary.extremes[i, 0] = min(summary.extremes[i, 0], least)
+        summary.extremes[i, 1] = max(summary.extremes[i, 1], greatest)
 
 
 @inner

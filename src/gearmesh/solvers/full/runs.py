@@ -12,6 +12,7 @@ from dataclasses import replace
 import numpy as np
 from numba import njit
 
+from gearmesh.errors import NoOrbit
 from gearmesh.model.contact import CONTACT_LOSS, dynamic_force
 from gearmesh.model.motion import ROTATION_2, ROTATION_3, Y_2, Y_3, start
 from gearmesh.model.problem import Branches, Problem, State
@@ -24,7 +25,16 @@ from gearmesh.solvers.full.measures import SAMPLE, SUMMARY
 from gearmesh.solvers.full.recurrences import recurrences
 from gearmesh.solvers.full.roots import MAX_DEGREE, TABLE_ROWS, WIDTH
 from gearmesh.solvers.full.series import CASE, CONTINUED, MODE, SEGMENT
-from gearmesh.solvers.response import EXTREMUM, LOOSENING, Companion, Response, Samples, assemble
+from gearmesh.solvers.response import (
+    EXTREMUM,
+    LOOSENING,
+    OK,
+    STATUSES,
+    Companion,
+    Response,
+    Samples,
+    assemble,
+)
 
 _EXTREMA_PER_PERIOD = 64
 # Steps between two returns to Python, where an interruption is noticed: some 0.1 s.
@@ -85,14 +95,61 @@ def integrate(
         run.final_state(),
         companion,
         tolerance,
-        _samples(run.samples) if samples_per_period else None,
+        _samples(run.samples, run.summary["extremes"]) if samples_per_period else None,
         run.rotation_drift,
         float(run.summary["least_contact_force"]),
     )
 
 
+class Propagation:
+    """Motions of one problem over mesh periods, from one start after the other.
+
+    Parameters
+    ----------
+    problem : Problem
+        Its initial state and its revolutions do not matter.
+    periods : int
+        Mesh periods from t = 0.
+    tolerance : float
+    share : float
+        Share of each mesh period that is integrated; with one period, where the motion ends.
+    """
+
+    def __init__(
+        self, problem: Problem, periods: int, tolerance: float, share: float = 1.0
+    ) -> None:
+        # A run takes whole revolutions: with a "revolution" of one period it takes any number of
+        # mesh periods. The wheels keep their teeth.
+        run = replace(
+            problem,
+            wheels=problem.both_wheels,
+            teeth=1,
+            revolutions=periods,
+            kept_revolutions=0,
+            initial_state=None,
+        )
+        self._run = _Run(run, tolerance, 0, suitable_order(tolerance), share=share)
+
+    def end(self, six: np.ndarray) -> np.ndarray:
+        """Return where the motion from six coordinates and their rates ends, shape (12,).
+
+        Raises
+        ------
+        NoOrbit
+            If it cannot be integrated.
+        """
+        self._run.start = six
+        self._run.integrate(0, 0)
+        if self._run.summary["status"] != OK:
+            status = STATUSES[self._run.summary["status"]]
+            raise NoOrbit(f"the motion cannot be integrated over the period: {status}")
+        return self._run.all_six()
+
+
 class _Run:
     """A run from its start to its end; `displacement` displaces wheel 3 at the start.
+
+    The mesh periods are cut off after a `share` of them.
 
     If the run has more extrema than there is room for, it is integrated again with room for all.
     """
@@ -104,14 +161,15 @@ class _Run:
         samples_per_period: int,
         order: int,
         displacement: float = 0.0,
+        share: float = 1.0,
     ) -> None:
         self.problem = problem
-        self.embedding = embedding(problem)
+        self.embedding = embedding(problem, samples_per_period > 0)
         kinds, variants = kinds_of_period(problem)
         found = recurrences(problem, kinds, samples_per_period > 0)
         self._arguments = (
             _case(problem, tolerance, order, self.embedding.shape[1]),
-            _segments(problem),
+            _segments(problem, share),
             variants,
             (found.numbers, found.branches),
         )
@@ -119,16 +177,17 @@ class _Run:
         self.extrema = np.zeros(0, EXTREMUM)
         self.start = np.concatenate(start(problem))
         self.start[ROTATION_3] += displacement
-        self._integrate(samples_per_period, _EXTREMA_PER_PERIOD * problem.kept_periods)
+        self.integrate(samples_per_period, _EXTREMA_PER_PERIOD * problem.kept_periods)
         found = self.summary["extrema"]
         if found > self.extrema.size:
-            self._integrate(samples_per_period, found)
+            self.integrate(samples_per_period, found)
         self.extrema = self.extrema[:found]
 
-    def _integrate(self, samples_per_period: int, room: int) -> None:
+    def integrate(self, samples_per_period: int, room: int) -> None:
         summaries = np.zeros(1, SUMMARY)
         summaries["y_max"], summaries["y_min"] = -np.inf, np.inf
         summaries["least_contact_force"] = np.inf
+        summaries["extremes"] = np.inf, -np.inf
         self.summary = summaries[0]
         self.state = projected(self.start, self.embedding)
         self.mode = _mode(self.problem)
@@ -152,7 +211,7 @@ class _Run:
     def final_state(self) -> State:
         """Return the state at the end of the run."""
         problem, mode = self.problem, self.mode[0]
-        six = self._all_six()
+        six = self.all_six()
         b, b_rate = (six[[Y_3, 6 + Y_3]] - six[[Y_2, 6 + Y_2]]).tolist()
         y, v = self.strobes[-1].tolist()
         branches = Branches(
@@ -168,7 +227,7 @@ class _Run:
         periods = problem.start_period + problem.periods
         return State(y, v, b, b_rate, tuple(six.tolist()), periods, branches)
 
-    def _all_six(self) -> np.ndarray:
+    def all_six(self) -> np.ndarray:
         """Return the six coordinates and their rates; what is not integrated is 0."""
         n = self.embedding.shape[1]
         both = self.embedding @ self.state[:n], self.embedding @ self.state[6 : 6 + n]
@@ -179,7 +238,7 @@ class _Run:
         """Change of (phi_3 - phi_2)/2 over the run, in rad; not a number if it is left out."""
         if self.embedding[ROTATION_3, 0] != 1.0:
             return np.nan
-        gained = self._all_six() - self.start
+        gained = self.all_six() - self.start
         wheel_3, wheel_2 = self.problem.both_wheels
         turned_3 = gained[ROTATION_3] / wheel_3.base_radius
         return 0.5 * float(turned_3 - gained[ROTATION_2] / wheel_2.base_radius)
@@ -227,6 +286,7 @@ def _case(problem: Problem, tolerance: float, order: int, coordinates: int) -> n
         (wheel.bearing_stiffness[1], wheel.bearing_damping[1]) for wheel in problem.both_wheels
     ]
     case["coordinates"] = coordinates
+    case["acting"] = embedding(problem).shape[1]
     case["segments"] = len(segments(problem))
     case["first_kept"] = problem.periods - problem.kept_periods
     case["tolerance"] = tolerance
@@ -237,13 +297,17 @@ def _case(problem: Problem, tolerance: float, order: int, coordinates: int) -> n
     return case
 
 
-def _segments(problem: Problem) -> np.ndarray:
-    """Return the segments of a mesh period as the kernel takes them."""
-    parts = [(part.end * problem.period, part.gamma, len(part.pairs)) for part in segments(problem)]
+def _segments(problem: Problem, share: float = 1.0) -> np.ndarray:
+    """Return the segments of a share of a mesh period as the kernel takes them."""
+    parts = [
+        (min(part.end, share) * problem.period, part.gamma, len(part.pairs))
+        for part in segments(problem)
+        if part.start < share
+    ]
     return np.array(parts, SEGMENT)
 
 
-def _samples(rows: np.ndarray) -> Samples:
+def _samples(rows: np.ndarray, extremes: np.ndarray) -> Samples:
     columns = {name: rows[name].copy() for name in SAMPLE.fields or ()}
     regime = columns["regime"].astype(np.int8)
     return Samples(
@@ -258,6 +322,9 @@ def _samples(rows: np.ndarray) -> Samples:
         force_friction=columns["friction"],
         force_bearing_3=columns["bearing_3"],
         force_bearing_2=columns["bearing_2"],
+        force_bearing_3_z=columns["bearing_3_z"],
+        force_bearing_2_z=columns["bearing_2_z"],
         transmission_error=columns["transmission_error"],
         regime=regime,
+        extremes=extremes,
     )
