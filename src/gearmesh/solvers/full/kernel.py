@@ -135,7 +135,7 @@ def _choose_step(case, series, remaining):
     step = min(remaining, case.longest_step)
     for k in range(case.order - 1, case.order + 1):
         size = abs(series[Y, k])
-        for i in range(case.coordinates):
+        for i in range(case.acting):
             size = max(size, abs(series[i, k]))
         if size > 0.0:
             # The rates have k times the terms of the coordinates, and one power of the step less.

@@ -98,7 +98,7 @@ def _recurrences(laws: Problem, segments: tuple[float, ...], sampled: bool) -> R
     numbers: list[float] = []
     branches = []
     height = FIRST_FREE
-    for parts in record(laws, segments):
+    for parts in record(laws, segments, sampled):
         if not parts:
             branches.append([0] * (2 * N_PARTS))
             continue

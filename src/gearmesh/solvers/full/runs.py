@@ -164,7 +164,7 @@ class _Run:
         share: float = 1.0,
     ) -> None:
         self.problem = problem
-        self.embedding = embedding(problem)
+        self.embedding = embedding(problem, samples_per_period > 0)
         kinds, variants = kinds_of_period(problem)
         found = recurrences(problem, kinds, samples_per_period > 0)
         self._arguments = (
@@ -286,6 +286,7 @@ def _case(problem: Problem, tolerance: float, order: int, coordinates: int) -> n
         (wheel.bearing_stiffness[1], wheel.bearing_damping[1]) for wheel in problem.both_wheels
     ]
     case["coordinates"] = coordinates
+    case["acting"] = embedding(problem).shape[1]
     case["segments"] = len(segments(problem))
     case["first_kept"] = problem.periods - problem.kept_periods
     case["tolerance"] = tolerance
@@ -296,7 +297,7 @@ def _case(problem: Problem, tolerance: float, order: int, coordinates: int) -> n
     return case
 
 
-def _segments(problem: Problem, share: float) -> np.ndarray:
+def _segments(problem: Problem, share: float = 1.0) -> np.ndarray:
     """Return the segments of a share of a mesh period as the kernel takes them."""
     parts = [
         (min(part.end, share) * problem.period, part.gamma, len(part.pairs))
@@ -321,6 +322,8 @@ def _samples(rows: np.ndarray, extremes: np.ndarray) -> Samples:
         force_friction=columns["friction"],
         force_bearing_3=columns["bearing_3"],
         force_bearing_2=columns["bearing_2"],
+        force_bearing_3_z=columns["bearing_3_z"],
+        force_bearing_2_z=columns["bearing_2_z"],
         transmission_error=columns["transmission_error"],
         regime=regime,
         extremes=extremes,
