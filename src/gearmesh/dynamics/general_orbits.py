@@ -154,8 +154,12 @@ class GeneralOrbit:
     def gradient(self) -> np.ndarray:
         """Jacobian of the defect in the state, shape (k, k)."""
         if self.chart.rotation == HELD:
-            first = np.eye(self.state.size)[0]
-            pushed = _slope(self._end_under, self.state, first)
+            # Newton's method and tangents need the effect of the moments to a few digits only.
+            away = _DIFFERENCE * np.eye(self.state.size)[0]
+            ahead, behind = (
+                self.shot(self.problem, self.state + one, self.periods).end for one in (away, -away)
+            )
+            pushed = (ahead - behind) / (2.0 * _DIFFERENCE)
             others = self.jacobian[:, 1:] - np.eye(self.end.size)[:, 1:]
             return np.column_stack([pushed, others])
         return self.monodromy - np.eye(self.state.size)
@@ -185,9 +189,6 @@ class GeneralOrbit:
     def _jacobian(self, step: float) -> np.ndarray:
         end = ends(self.held, self.periods)
         return np.array([_slope(end, self.start, one, step) for one in np.eye(self.end.size)]).T
-
-    def _end_under(self, state: np.ndarray) -> np.ndarray:
-        return self.shot(self.problem, state, self.periods).end
 
     @property
     def undamped(self) -> bool:

@@ -23,6 +23,7 @@ from gearmesh.solvers.reduced.curves import LARGEST_RESIDUAL
 _MOST_CORRECTIONS = 30
 _SHORTEST_CORRECTION = 1.0 / 64.0
 _TRANSIENT = 1000  # mesh periods after which the end of a run serves as an initial state
+_BLOCK = 20  # least mesh periods after which a drive corrects the rotation on the way
 
 
 def find_orbit(problem: Problem, periods: int = 1) -> GeneralOrbit:
@@ -56,21 +57,23 @@ def find_orbit(problem: Problem, periods: int = 1) -> GeneralOrbit:
 def _settled(problem: Problem, place: np.ndarray, periods: int) -> GeneralOrbit:
     """Return the motion at the end of a long run from a place.
 
-    If the mean rotation has to be held, a drive corrects it after every period of the orbit.
+    If the mean rotation has to be held, a drive corrects it after whole periods of the orbit.
     """
     chart, angle = chart_of(problem), float(place[0])
-    blocks = math.ceil(_TRANSIENT / periods)
     if chart.rotation != HELD:
-        moved = shot_from(problem, chart.unknowns(place), blocks * periods, angle)
+        whole = periods * math.ceil(_TRANSIENT / periods)
+        moved = shot_from(problem, chart.unknowns(place), whole, angle)
         return shot_from(problem, chart.unknowns(moved.end), periods, angle)
-    pushed, duration = 0.0, periods * problem.period
-    for _ in range(blocks):
-        moved = shot_from(problem, chart.unknowns(place, pushed), periods, angle)
+    block = periods * math.ceil(_BLOCK / periods)
+    pushed, duration = 0.0, block * problem.period
+    for _ in range(math.ceil(_TRANSIENT / block)):
+        moved = shot_from(problem, chart.unknowns(place, pushed), block, angle)
         gained, sped = (moved.end - moved.start)[[0, chart.n]].tolist()
         pushed -= sped * duration
         place = moved.end.copy()
         place[0] = angle
         place[chart.n] = moved.start[chart.n] - gained / duration + 0.5 * sped
+    pushed *= (periods / block) ** 2
     return shot_from(problem, chart.unknowns(place, pushed), periods, angle)
 
 
