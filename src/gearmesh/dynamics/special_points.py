@@ -37,7 +37,7 @@ Test = tuple[str, Callable[[Point], float]]
 Inner = tuple[Point, Point, float]
 """Points just inside the two ends of a piece of a branch, and their distance from the ends."""
 
-_MARGIN = 0.5
+_MARGIN = 0.25
 _OFFSET = 1e-5
 _NARROWEST = 1e-6  # piece of a branch; roots of one test closer than this are not separated
 _NARROWEST_PIECE = 1e-11  # between two grazings, in which multipliers are tested
