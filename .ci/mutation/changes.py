@@ -50,12 +50,17 @@ def changes(source: str) -> list[Change]:
     lines = source.splitlines()
     found = []
     for node, field, index, statement in _places(ast.parse(source)):
-        at = node.ifs[index] if field == "filter" else node
+        at = node.ifs[index] if field == "filter" else getattr(node, "test", node)
         which = f" {index + 1}" if index else ""
         line = lines[at.lineno - 1].strip()
-        what = f"{at.lineno}:{at.col_offset + 1}: {line} [{field}{which}]"
+        what = f"{at.lineno}:{at.col_offset + 1}: {line} [{field}{which}, {_code(at)}]"
         found.append(Change(what, _lines(statement, at)))
     return found
+
+
+def _code(node: ast.AST) -> str:
+    code = ast.unparse(node)
+    return code if len(code) <= 40 else f"{code[:18]} … {code[-18:]}"
 
 
 def changed(source: str, number: int) -> ast.Module:
@@ -90,7 +95,10 @@ def _places(tree: ast.AST) -> Iterator[tuple[ast.AST, str, int, ast.AST]]:
 
 
 def _spared(tree: ast.AST) -> Iterator[ast.AST]:
-    """Yield what changes no result: decorators, annotations, messages of errors, zip(strict=)."""
+    """Yield what changes no result.
+
+    These are decorators, annotations and their imports, messages of errors, and `strict` of zip.
+    """
     for node in ast.walk(tree):
         yield from getattr(node, "decorator_list", ())
         for field in ("returns", "annotation"):
@@ -99,6 +107,8 @@ def _spared(tree: ast.AST) -> Iterator[ast.AST]:
         if isinstance(node, ast.Raise) and node.exc:
             yield node.exc
         if isinstance(node, ast.keyword) and node.arg == "strict":
+            yield node
+        if isinstance(node, ast.If) and ast.unparse(node.test) == "TYPE_CHECKING":
             yield node
 
 

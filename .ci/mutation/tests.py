@@ -70,18 +70,32 @@ class Trace:
     """Notes which lines of the functions of some files run."""
 
     def __init__(self, files: Iterable[Path]) -> None:
-        self.lines: set[tuple[str, int]] = set()
         self._files = {str(file) for file in files}
+        self.begin()
+
+    def begin(self) -> None:
+        """Forget all lines."""
+        self.lines: set[tuple[str, int]] = set()
+        self._left: dict[int, set[int]] = {}
 
     def __call__(self, frame: FrameType, event: str, argument: object) -> Any:
-        """Decide whether the lines of a call count; `sys.settrace` asks."""
+        """Decide whether the lines of a call count; `sys.settrace` asks.
+
+        A function whose lines have all been noted is not traced any more, which takes time.
+        """
         code = frame.f_code
-        wanted = code.co_filename in self._files and code.co_flags & inspect.CO_NEWLOCALS
-        return self._line if wanted else None
+        if code.co_filename not in self._files or not code.co_flags & inspect.CO_NEWLOCALS:
+            return None
+        if id(code) not in self._left:
+            lines = {line for _, _, line in code.co_lines() if line}
+            self._left[id(code)] = lines - {code.co_firstlineno} or lines
+        return self._line if self._left[id(code)] else None
 
     def _line(self, frame: FrameType, event: str, argument: object) -> Any:
+        left = self._left[id(frame.f_code)]
+        left.discard(frame.f_lineno)
         self.lines.add((frame.f_code.co_filename, frame.f_lineno))
-        return self._line
+        return self._line if left else None
 
 
 class _Collected:
@@ -135,7 +149,7 @@ def observe(session: Any, trace: Trace) -> str:
             # Neither caches nor fixtures of an earlier test may hide what this one runs.
             for one in remembering:
                 one.cache_clear()
-            trace.lines = set()
+            trace.begin()
             start = time.process_time()
             item.ihook.pytest_runtest_protocol(item=item, nextitem=None)
             seconds[item.nodeid] = time.process_time() - start

@@ -72,12 +72,12 @@ def test_what_is_not_stated_is_absent():
     assert one.initial_state is None and one.wheels is None
     terms = one.terms
     assert terms == GeneralTerms()
-    assert terms.torsional_damping == (0.0, 0.0)
-    assert (terms.restoring_2, terms.restoring_3, terms.damping_power) == (0.0, 0.0, 0.0)
-    assert terms.restoring_power == 1.0
+    neutral = {"restoring_power": 1.0}
+    pairs = ("torsional_damping", "tip_relief", "tip_relief_length")
+    neutral |= dict.fromkeys(pairs, (0.0, 0.0))
     for field in fields(terms):
-        if field.name not in ("torsional_damping", "restoring_power"):
-            assert not getattr(terms, field.name), field.name
+        absent = neutral.get(field.name, () if "tuple" in str(field.type) else 0)
+        assert getattr(terms, field.name) == absent, field.name
     assert Mode(1, 0.5) == Mode(1, 0.5, 1, 1, False)
     assert elastic_force(2.0, 1.5, NORMAL_MESH, 4.0) == 3.0
     assert elastic_force(2.0, 1.5, NORMAL_MESH, 4.0, 0.5) == 6.0
@@ -134,6 +134,15 @@ def test_a_state_is_given_by_the_motion_of_the_mesh():
     assert q.tolist() == static_equilibrium(ECCENTRIC, 1.4)[0].tolist()
     assert v.tolist() == [0.3, 0.3, 0.0, 0.0, 0.0, 0.0]
     assert state_at(ECCENTRIC) == state_at(ECCENTRIC, 1.0, 0.0)
+    begun = motion.start(replace(ECCENTRIC, initial_state=state))
+    assert (begun[0].tolist(), begun[1].tolist()) == (q.tolist(), v.tolist())
+
+
+def test_a_state_is_given_by_all_coordinates():
+    q, v = np.random.default_rng(6).normal(size=(2, 6))
+    state = motion.state_of(ECCENTRIC, q, v)
+    assert (state.y, state.v) == relative_motion(ECCENTRIC, ECCENTRIC.start_time, q, v)
+    assert (state.b, state.b_rate) == (q[Y_3] - q[Y_2], v[Y_3] - v[Y_2])
     begun = motion.start(replace(ECCENTRIC, initial_state=state))
     assert (begun[0].tolist(), begun[1].tolist()) == (q.tolist(), v.tolist())
 

@@ -41,7 +41,7 @@ TABLE = ((0.0, 1.1), (0.3, 1.3), (0.3, 0.9), (0.6, 0.7), (1.0, 1.1))
 PROBLEMS = {
     "equal wheels": ROUGH,
     "equal wheels, no run-out": replace(ROUGH, eccentricity_3=0.0, eccentricity_2=0.0),
-    "cut series": replace(ROUGH, stiffness_harmonics=4),
+    "cut series": replace(ROUGH, stiffness_harmonics=4, friction_coefficient=1.0),
     "series": replace(
         ROUGH,
         terms=replace(TERMS, stiffness_fourier=((0.2, 0.1), (0.03, -0.05)), damping_power=1.0),
@@ -63,8 +63,32 @@ PROBLEMS = {
         ),
     ),
     "frictionless": replace(ROUGH, friction_coefficient=0.0, terms=TERMS),
+    "power of Hertz": replace(ROUGH, terms=replace(TERMS, restoring_power=1.5)),
+    "gap of the centres": replace(
+        ROUGH, wheels=WHEELS, teeth=20, terms=replace(TERMS, backlash_follows_centres=True)
+    ),
+    "flanks": replace(
+        ROUGH,
+        terms=replace(
+            TERMS,
+            pitch_errors_3=tuple(0.1 * (n % 4) for n in range(21)),
+            pitch_errors_2=tuple(-0.07 * (n % 3) for n in range(21)),
+            tip_relief=(0.5, 0.4),
+            tip_relief_length=(0.45, 0.35),
+            tooth_factors=(ToothFactor(3, 1, 0.5),),
+        ),
+    ),
 }
 SIGNS = [(1, 1), (1, -1), (-1, 1), (-1, -1), (1, 0)]
+
+
+def pressing_pairs(one, segment, presses):
+    """Return the pairs that press, by their numbers and as `Mode.pressing` has them."""
+    if not afresh.deviates(one):
+        return (), ()
+    numbers = [p for _, _, p in afresh.pairs(one, segment)]
+    chosen = tuple(p for p in numbers if presses(p))
+    return chosen, tuple(float(p in chosen) for p in sorted(numbers, reverse=True))
 
 
 def states(seed):
@@ -79,13 +103,15 @@ def states(seed):
 @pytest.mark.parametrize("name", PROBLEMS)
 def test_the_accelerations_are_those_of_the_independent_statement(name, regime, parted):
     one = PROBLEMS[name]
-    signs = SIGNS if one.friction_coefficient and not parted else SIGNS[:1]
-    for run_out_sign, slip_sign in signs:
+    signed = SIGNS if one.friction_coefficient and not parted else SIGNS[:1]
+    for run_out_sign, slip_sign in signed:
         for phase, segment, q, v in states(9):
             time = phase * one.period
             q[0] += {NORMAL_MESH: 6.0, CONTACT_LOSS: -1.0, INVERSE_MESH: -14.0}[regime]
-            mode = Mode(regime, segment, run_out_sign, slip_sign, parted)
-            known = afresh.Mode(regime, segment, run_out_sign, slip_sign, parted)
+            which = pressing_pairs(one, segment, lambda p, n=run_out_sign: p % 2 or n > 0)
+            signs = run_out_sign, slip_sign, parted
+            mode = Mode(regime, segment, *signs, which[1])
+            known = afresh.Mode(regime, segment, *signs, which[0])
             expected = afresh.rates(one, time, [*q, *v], known)[6:]
             found = motion.accelerations(one, time, q, v, mode)
             np.testing.assert_allclose(found, expected, rtol=1e-11, atol=1e-12)
@@ -126,7 +152,13 @@ def test_without_a_mode_the_branches_of_the_state_act(name):
             time = phase * one.period
             y, _ = afresh.relative_motion(one, time, [*q, *v])
             gap = afresh.backlash(one, time, [*q, *v])
+            assert motion.gap(one, time, q) == pytest.approx(gap, rel=1e-13)
             regime = NORMAL_MESH if y >= 0 else INVERSE_MESH if y <= -gap else CONTACT_LOSS
+            which = pressing_pairs(
+                one, phase, lambda p, t=time, at=y: at >= afresh.distance(one, t, p)
+            )
+            if which[1]:
+                regime = NORMAL_MESH if which[0] else min(regime, CONTACT_LOSS)
             signs = (1, 1)
             if one.eccentricity_3 + one.eccentricity_2:
                 bracket = afresh.bracket(one, time, [*q, *v])
@@ -135,7 +167,8 @@ def test_without_a_mode_the_branches_of_the_state_act(name):
             assert (found.regime, found.run_out_sign, found.slip_sign) == (regime, *signs)
             assert found.segment == pytest.approx(phase, rel=1e-14)
             assert not found.parted
-            mode = afresh.Mode(regime, phase, *signs)
+            assert found.pressing == which[1]
+            mode = afresh.Mode(regime, phase, *signs, pressing=which[0])
             expected = afresh.rates(one, time, [*q, *v], mode)[6:]
             np.testing.assert_allclose(
                 motion.accelerations(one, time, q, v), expected, rtol=1e-11, atol=1e-12
@@ -163,9 +196,10 @@ def test_flanks_that_do_not_adhere_part_where_the_contact_force_would_pull(y, si
     assert not motion.mode_of(sticky, 0.0, q, v).parted
     acting = 0.0 if pulls else force
     assert 2.0 * motion.accelerations(free, 0.0, q, v)[0] == pytest.approx(1.0 - acting)
-    # In contact loss the lubricant may pull.
+    # In contact loss the lubricant may pull, and where flanks just touch nothing does.
     q[0] = -1.0
     assert not motion.mode_of(free, 0.0, q, v).parted
+    assert not motion.mode_of(free, 0.0, np.zeros(6), np.zeros(6)).parted
 
 
 def test_the_forces_of_parted_flanks_are_none_but_the_contact_force_is_known():

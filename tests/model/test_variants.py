@@ -57,7 +57,7 @@ def test_five_times_the_damping():
 @pytest.mark.parametrize(
     ("name", "told"),
     [
-        ("c-materal", "did you mean 'c-material'"),
+        ("c-materal", "did you mean 'c-material'?"),
         ("", "unknown name ''"),
         ("C-material", "did you mean 'c-material'"),
         ("i-both", "unknown name 'i-both'"),

@@ -256,10 +256,13 @@ def test_friction_is_measured_within_double_contact(pair):
     case["force_friction"] = ("sample", force)
     found, _ = fig7.friction_sense(Evidence(pair=pair, time_courses=of_both(case)))
     assert found["in double contact"]["c-material"] == pytest.approx(0.05)
-    force[edges[0] - 1] = force[edges[1] + 1] = 1.0
-    case["force_friction"] = ("sample", force)
-    found, _ = fig7.friction_sense(Evidence(pair=pair, time_courses=of_both(case)))
-    assert found["in double contact"]["c-material"] == pytest.approx(0.5)
+    # The first pulse ends with edges[0], and the second begins with edges[1].
+    for next_one in (edges[0] - 1, edges[1] + 1):
+        counted = force.copy()
+        counted[next_one] = 1.0
+        case["force_friction"] = ("sample", counted)
+        found, _ = fig7.friction_sense(Evidence(pair=pair, time_courses=of_both(case)))
+        assert found["in double contact"]["c-material"] == pytest.approx(0.5)
     case["force_friction"] = ("sample", np.zeros(400))
     found, _ = fig7.friction_sense(Evidence(pair=pair, time_courses=of_both(case)))
     assert math.isnan(found["in double contact"]["c-material"])
@@ -401,7 +404,9 @@ def test_a_root_is_where_the_sign_changes():
     assert printed._root(lambda x: 0.3 - x, 0.0, 1.0) == pytest.approx(0.3, abs=1e-7)
     for constant in (1.0, -1.0):
         assert math.isnan(printed._root(lambda x, c=constant: c, 0.0, 1.0))
+    # It must lie between the ends.
     assert math.isnan(printed._root(lambda x: x, 0.0, 1.0))
+    assert math.isnan(printed._root(lambda x: x - 1.0, 0.0, 1.0))
 
 
 def test_the_parametric_tongue_is_where_the_multipliers_leave_the_unit_circle(pair):
@@ -514,7 +519,8 @@ def test_an_entry_is_unexpected_if_it_is_judged_and_has_another_status():
 
 
 def test_an_entry_as_json_has_six_digits_and_no_empty_options(tmp_path):
-    made = entry(measured={"a": (0.123456789, math.inf), "b": [True, 12345678, None]})
+    values = {"a": (0.123456789, math.inf), "b": [True, 12345678, None]}
+    made = entry(measured=values, detail="ν_s")
     stored = made.as_json()
     assert stored["measured"] == {"a": [0.123457, None], "b": [True, 12345678, None]}
     assert not {"quote", "tolerance_reason", "reason", "mechanism"} & stored.keys()
@@ -522,6 +528,7 @@ def test_an_entry_as_json_has_six_digits_and_no_empty_options(tmp_path):
     quoted = entry(mechanism="orbit").model_copy(update={"quote": "so"})
     assert (quoted.as_json()["quote"], quoted.as_json()["mechanism"]) == ("so", "orbit")
     write_entries(tmp_path / "one.json", [made])
+    assert "ν_s" in (tmp_path / "one.json").read_text("utf-8")
     assert json.loads((tmp_path / "one.json").read_text("utf-8")) == [stored]
     assert (tmp_path / "one.json").read_text("utf-8").startswith('[\n {\n  "id"')
 
