@@ -14,7 +14,10 @@ import time
 from pathlib import Path
 
 ROOT = Path(__file__).parents[1]
-COPIED = ("Snakefile", "config", "notebooks", "profiles", "src", "workflow")
+COPIED = (
+    *("Snakefile", "config", "notebooks", "profiles", "src", "workflow"),
+    *("CITATION.cff", "requirements.lock"),
+)
 CORES = "2"
 PLAIN_CASES = 24
 

@@ -117,8 +117,8 @@ class _Run:
         self.problem = problem
         self.options = {"method": "DOP853", "rtol": rtol, "atol": rtol, "max_step": max_step}
         self.time = problem.start_time
-        assert problem.initial_state is None
-        self.state = rest(problem)
+        start = problem.initial_state
+        self.state = np.array(start.coordinates) if start else rest(problem)
         positive = bracket(problem, self.time, self.state) >= 0.0
         self.mode = Mode(NORMAL_MESH, self.time / problem.period, 1 if positive else -1)
         total = problem.eccentricity_3 + problem.eccentricity_2

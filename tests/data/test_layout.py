@@ -236,7 +236,7 @@ def test_figures_notebooks_and_what_the_report_reads():
 
 def test_the_loads_of_a_run_stand_beside_its_numbers(pair):
     """In these samples neither the stiffness nor the regime jumps."""
-    still = replace(SAMPLES, regime=np.ones(COUNT, int), stiffness=np.ones(COUNT))
+    still = replace(SAMPLES, regime=np.ones(COUNT, int), stiffness=np.ones(COUNT), extremes=None)
     run = replace(RUN, samples=still, located_contact_force=-0.5)
     problem = pair.problem(variant("c-material"), 0.66)
     columns = casefile.record(run, pair, problem)

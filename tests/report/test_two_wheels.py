@@ -11,11 +11,16 @@ GENERAL = {
     "torque_harmonics": [{"shaft": 1, "sin": 0.25}],
     "non_adhesive": True,
     "damping_follows_stiffness": "sqrt",
+    "pitch_errors": [[f"{tooth % 2} um" for tooth in range(20)], []],
 }
 
 
 def test_every_parameter_is_written_in_the_table_and_in_the_report(pair):
     general = pair.replace(**GENERAL)
+    errors = _text(general.pitch_errors)
+    assert errors == "20 values from 0 to 0.001, none"
+    assert quantity((3.0, 4.0, 3.0), "mm") == "3 mm, 4 mm, 3 mm"
+    assert quantity((3.0, 3.0), "mm") == "3 mm"
     for write in (lambda row: _text(row.value), lambda row: quantity(row.value, row.unit)):
         written = {row.name: write(row) for row in general.parameters if row.value is not None}
         assert written["teeth"] == "20, 40"

@@ -1,4 +1,4 @@
-"""Every term of eq. (1) and two different wheels, against SciPy's DOP853, over 24 periods.
+"""Every term of eq. (1) and two different wheels, against SciPy's DOP853, over 30 periods.
 
 `independent` states the equations for itself, from the paper, in all six coordinates.
 """
@@ -9,14 +9,16 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from independent import integrate as integrate_independently
+from independent_equations import Y_2, Y_3, Z_2, Z_3, bearing
 from problems import problem
 
 from gearmesh.model.contact import CONTACT_LOSS, INVERSE_MESH
 from gearmesh.model.functions import Harmonic
+from gearmesh.model.motion import state_of
 from gearmesh.model.problem import GeneralTerms, Problem, ToothFactor, Wheel
 from gearmesh.solvers.full.runs import integrate
 
-PERIODS = 24
+PERIODS = 30
 
 PINION = Wheel(20, 2860.0, 1.5, 8.0, (1.2, 0.8), (0.03, 0.05))
 WHEEL = Wheel(40, 5720.0, 3.0, 20.0, (2.0, 1.5), (0.02, 0.04))
@@ -44,6 +46,7 @@ def unequal(nu=0.7, name="c-both", terms=None, **changes) -> Problem:
     return pair(nu, name, terms, **{"wheels": wheels, **of_pinion, **changes})
 
 
+RATES = np.array([0.2, 0.1, -0.05, 0.0, 0.1, 0.05])
 RUN_OUT = {"eccentricity_3": 0.5, "eccentricity_2": 0.3, "eccentricity_angle": 1.0}
 ONCE_A_TURN = (Harmonic(1.0 / 20, 0.1, 0.2),)
 TORQUE = {
@@ -132,6 +135,9 @@ CASES = {
         friction_coefficient=0.0,
         **RUN_OUT,
     ),
+    "six coordinates at the start, two wheels": unequal(
+        0.8, initial_state=state_of(unequal(), np.array([0.9, 0.4, 0.3, -0.2, 0.1, 0.0]), RATES)
+    ),
     "everything": unequal(
         0.85,
         "g-both",
@@ -172,3 +178,21 @@ def test_agrees_with_dop853(name):
     assert course.pressings > 100 or "tip relief" not in name
     assert course.partings > 1 or "non-adhesive" not in name
     assert {value for _, value in course.slips} >= {-1, 0} or "sliding" not in name
+
+
+def test_bearings_have_the_forces_of_dop853_along_the_mesh_line_and_across_it():
+    case = replace(CASES["two wheels, contact loss"], revolutions=2, kept_revolutions=1)
+    course = integrate_independently(case, case.teeth, 1e-12, 24)
+    response = integrate(case, 1e-12, 8, estimate_errors=False)
+    found = response.samples
+    forces = (
+        *(found.force_bearing_3, found.force_bearing_2),
+        *(found.force_bearing_3_z, found.force_bearing_2_z),
+    )
+    expected = [-bearing(case, i, course.state) for i in (Y_3, Y_2, Z_3, Z_2)]
+    assert [force[0] for force in forces] == pytest.approx(expected, abs=1e-8)
+    assert min(abs(force) for force in expected[2:]) > 1e-3
+    for force, (least, greatest) in zip(forces, found.extremes[2:], strict=True):
+        assert least <= force.min() < force.max() <= greatest
+    plain = integrate(case, 1e-12, estimate_errors=False)
+    np.testing.assert_array_equal(response.strobe_y, plain.strobe_y)

@@ -10,9 +10,9 @@ ATLAS = """\
 base: atlas.yaml
 title: A coarse atlas
 nu: {start: 0.6, stop: 1.2, step: 0.2}
-variants: [a-conservative, b-both, c-both, d-both, e-both, f-both]
+variants: [a-conservative, b-both, c-both, d-both]
 """
-"""The atlas on a coarse grid: 24 cases in 6 batches."""
+"""The atlas on a coarse grid: 16 cases in 4 batches."""
 
 
 @pytest.fixture
@@ -31,15 +31,15 @@ def finished(project: Project) -> dict[Path, int]:
 def test_a_killed_atlas_keeps_its_batches_and_ends_with_the_same_bytes(atlas, tmp_path):
     undisturbed = atlas.copy(tmp_path / "undisturbed")
     assert undisturbed.run("data").returncode == 0
-    run = atlas.start("data")
-    run.wait_for(lambda: len(finished(atlas)) >= 3)
+    run = atlas.start("data", options=("--cores", "1"))
+    run.wait_for(lambda: len(finished(atlas)) >= 2)
     run.send(signal.SIGKILL)
     run.wait()
     before = finished(atlas)
-    assert 3 <= len(before) < 6
+    assert 2 <= len(before) < 4
     again = atlas.run("data")
     assert again.returncode == 0, again.stdout
     assert atlas.results() == undisturbed.results()
     assert not any(name.startswith("cases/") for name in atlas.results())
     kept = {path for path, written in finished(atlas).items() if before.get(path) == written}
-    assert len(kept) >= len(before) - 2  # two may have been under way
+    assert len(kept) >= len(before) - 1  # one may have been under way

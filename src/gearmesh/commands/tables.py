@@ -83,6 +83,10 @@ def geometry(options: argparse.Namespace) -> int:
     return 0
 
 
+_LISTED = 6
+"""A table shows the ends of lists that are longer."""
+
+
 def _of_wheels(texts: Sequence[str]) -> object:
     """Return one value, or two for wheels 3 and 2."""
     return texts[0] if len(texts) == 1 else list(texts)
@@ -92,7 +96,11 @@ def _text(value: object) -> str:
     if value is None:
         return "-"
     if isinstance(value, tuple):
-        return ", ".join(dict.fromkeys(map(_text, value))) or "none"
+        texts = [_text(item) for item in value]
+        if len(texts) > _LISTED and all(isinstance(item, float) for item in value):
+            return f"{len(texts)} values from {_text(min(value))} to {_text(max(value))}"
+        same = len(set(texts)) == 1
+        return ", ".join(texts[:1] if same else texts) or "none"
     if isinstance(value, bool):
         return "yes" if value else "no"
     return f"{value:.8g}" if isinstance(value, int | float) else str(value)

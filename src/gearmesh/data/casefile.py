@@ -119,6 +119,8 @@ LOAD_FIELDS = (
     Field("dynamic_factor", "", "1", "dynamic factor K_v, greatest tooth force over static force"),
     Field("force_bearing_3_max", "", "N", "greatest force on the bearing of wheel 3 along y"),
     Field("force_bearing_2_max", "", "N", "greatest force on the bearing of wheel 2 along y"),
+    Field("force_bearing_3_z_max", "", "N", "greatest force on the bearing of wheel 3 along z"),
+    Field("force_bearing_2_z_max", "", "N", "greatest force on the bearing of wheel 2 along z"),
 )  # fmt: skip
 """What engineers report of a run; in a record where it is asked for."""
 
@@ -126,6 +128,8 @@ LOAD_SAMPLE_FIELDS = (
     Field("force_normal", "sample", "N", "tooth force: elastic and damping force"),
     Field("force_bearing_3", "sample", "N", "force on the bearing of wheel 3 along y"),
     Field("force_bearing_2", "sample", "N", "force on the bearing of wheel 2 along y"),
+    Field("force_bearing_3_z", "sample", "N", "force on the bearing of wheel 3 along z"),
+    Field("force_bearing_2_z", "sample", "N", "force on the bearing of wheel 2 along z"),
     Field("transmission_error", "sample", "mm",
           "dynamic transmission error R_b3 phi_3 + R_b2 phi_2"),
 )  # fmt: skip
@@ -216,7 +220,9 @@ def _loads(response: Response, problem: Problem) -> Iterator[tuple[Field, object
     for field in LOAD_FIELDS:
         yield field, found[field.name]
     for field in LOAD_SAMPLE_FIELDS:
-        yield field, getattr(response.samples, field.name)
+        values = getattr(response.samples, field.name)
+        if values is not None:
+            yield field, values
 
 
 @functools.lru_cache(maxsize=2**13)

@@ -2,14 +2,13 @@
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
-from functools import partial
-from itertools import pairwise
+from functools import cached_property, partial
 
 import numpy as np
 
 from gearmesh.dynamics.continuation import Curve, Family, Point, clear_phase, stretches
 from gearmesh.dynamics.shots import Shot
-from gearmesh.dynamics.special_points import SpecialPoint, special_points
+from gearmesh.dynamics.special_points import SpecialPoint, special_points, suspects
 from gearmesh.dynamics.walks import LONGEST_STEP, Piece, joined, points_of, walk
 from gearmesh.errors import NoOrbit
 from gearmesh.model.problem import Problem
@@ -25,10 +24,10 @@ class Branch:
     ----------
     parameter : str
         Name of the parameter.
-    values : ndarray, shape (n,)
-        The parameter along the branch.
-    orbits : sequence of Shot
-        The orbits at these values.
+    points : list of Point
+        The branch, point by point, in the order in which it is passed.
+    phase : float
+        Mesh phase at which the states of `orbits` are taken.
     special : list of SpecialPoint
         Special points in their order along the branch.
     ends : tuple of two str
@@ -37,35 +36,45 @@ class Branch:
     """
 
     parameter: str
-    values: np.ndarray
-    orbits: Sequence[Shot]
+    points: list[Point]
+    phase: float
     special: list[SpecialPoint]
     ends: tuple[str, str]
+
+    @cached_property
+    def values(self) -> np.ndarray:
+        """The parameter along the branch, shape (n,)."""
+        return np.array([point.values[0] for point in self.points])
+
+    @cached_property
+    def orbits(self) -> Sequence[Shot]:
+        """The orbits at these values."""
+        return [point.orbit.at_phase(self.phase) for point in self.points]
 
     @property
     def y_max(self) -> np.ndarray:
         """Greatest y of each orbit."""
-        return np.array([orbit.y_max for orbit in self.orbits])
+        return np.array([point.orbit.y_max for point in self.points])
 
     @property
     def y_min(self) -> np.ndarray:
         """Least y of each orbit."""
-        return np.array([orbit.y_min for orbit in self.orbits])
+        return np.array([point.orbit.y_min for point in self.points])
 
     @property
     def stable(self) -> np.ndarray:
         """Whether each orbit is stable."""
-        return np.array([orbit.stable for orbit in self.orbits])
+        return np.array([point.orbit.stable for point in self.points])
 
     @property
     def neutral(self) -> np.ndarray:
         """Whether each orbit is neutral."""
-        return np.array([orbit.neutral for orbit in self.orbits])
+        return np.array([point.orbit.neutral for point in self.points])
 
     @property
     def multipliers(self) -> np.ndarray:
         """Floquet multipliers, shape (n, number of multipliers)."""
-        return np.array([orbit.multipliers for orbit in self.orbits])
+        return np.array([point.orbit.multipliers for point in self.points])
 
 
 def follow(
@@ -116,7 +125,6 @@ def follow(
     start = curve.at(moved, (value,))
     back, ahead = walk(curve, start, (limits,), longest_step)
     pieces = joined(back, ahead)
-    points = points_of(pieces)
     special = [
         SpecialPoint(kind, found.problem.nu, {parameter: point.values[0]}, found)
         for kind, point in [*back.flip[: back is not ahead], *_special(pieces), *ahead.flip]
@@ -124,8 +132,8 @@ def follow(
     ]
     return Branch(
         parameter,
-        np.array([point.values[0] for point in points]),
-        [point.orbit.at_phase(phase) for point in points],
+        points_of(pieces),
+        phase,
         special,
         (back.reason, ahead.reason),
     )
@@ -141,8 +149,8 @@ def _special(pieces: list[Piece]) -> list[tuple[str, Point]]:
     return [
         found
         for piece in pieces
-        for left, right in pairwise(piece.points)
-        for found in special_points(piece.curve, left, right)
+        for i in suspects(piece.points)
+        for found in special_points(piece.curve, piece.points[i], piece.points[i + 1])
     ]
 
 

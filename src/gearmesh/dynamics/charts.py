@@ -57,6 +57,10 @@ class Chart:
         found = projected(six, self.columns)
         return np.concatenate([found[: self.n], found[6 : 6 + self.n]])
 
+    def six(self, place: np.ndarray) -> np.ndarray:
+        """Return the six coordinates and their rates at a place."""
+        return np.concatenate([self.columns @ place[: self.n], self.columns @ place[self.n :]])
+
     def place(self, unknowns: np.ndarray, angle: float) -> np.ndarray:
         """Return the place that unknowns of an orbit state; `angle` is that of mean rotation."""
         if self.rotation == ABSENT:
@@ -116,10 +120,8 @@ def with_moments(problem: Problem, moments: tuple[float, float]) -> Problem:
 
 def state_at_place(problem: Problem, place: np.ndarray) -> State:
     """Return the state of a run at a place, when t = 0 at mesh phase 0."""
-    columns = chart_of(problem).columns
-    n = columns.shape[1]
-    q, v = columns @ place[:n], columns @ place[n:]
+    six = chart_of(problem).six(place)
+    q, v = six[:6], six[6:]
     bare = replace(problem, initial_state=None)
     y, rate = relative_motion(bare, bare.start_time, q, v)
-    both = (*q.tolist(), *v.tolist())
-    return State(y, rate, q[Y_3] - q[Y_2], v[Y_3] - v[Y_2], coordinates=both)
+    return State(y, rate, q[Y_3] - q[Y_2], v[Y_3] - v[Y_2], coordinates=tuple(six.tolist()))

@@ -7,24 +7,26 @@ arclength and not by a parameter.
 """
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
+from functools import cached_property
 
 import numpy as np
 
-from gearmesh.dynamics.orbits import LARGEST_RESIDUAL, ROUNDED
+from gearmesh.dynamics.orbits import Orbit
 from gearmesh.dynamics.shots import Shot
 from gearmesh.errors import NoOrbit
 from gearmesh.model.problem import Problem
+from gearmesh.solvers.reduced import curves
+from gearmesh.solvers.reduced.curves import LARGEST_RESIDUAL, ROUNDED, is_clear
+from gearmesh.solvers.reduced.period_map import Passage, Statement, passage_of, statement, trace
 
 Family = Callable[..., Problem]
 """The problem at the values of the parameters."""
 
 _MOST_CORRECTIONS = 12
 _DIFFERENCE = 1e-5
-_SHORTEST_STEP = 1e-7
 _PLACES = 64
-_LEAST_ALIGNMENT = 0.97  # cosine of the angle between neighbouring tangents
-_LARGEST_CORRECTION = 0.3  # of a step
+_MOST_STEPS = 64  # in one call of the compiled code
 
 
 @dataclass(frozen=True)
@@ -42,19 +44,28 @@ class Point:
     determinant : float
         Determinant of the Jacobian of P^n(x) - x (and of the condition) in state and parameters,
         bordered by the tangent.
-    orbit : Shot
+    made : callable
+        Returns the orbit.
+    passage : Passage, optional
+        The motion over the period of the orbit, if compiled code found it.
     """
 
     place: np.ndarray
     values: tuple[float, ...]
     tangent: np.ndarray
     determinant: float
-    orbit: Shot
+    made: Callable[[], Shot] = field(repr=False)
+    passage: Passage | None = field(default=None, repr=False)
+
+    @cached_property
+    def orbit(self) -> Shot:
+        """The orbit."""
+        return self.made()
 
     @property
     def slope(self) -> float:
         """Change of the first parameter along the tangent, in units of the curve."""
-        return float(self.tangent[self.orbit.state.size])
+        return float(self.tangent[-len(self.values)])
 
     def reversed(self) -> "Point":
         """Return the same point, seen in the other direction along the curve."""
@@ -93,6 +104,14 @@ class Curve:
     condition: Callable[[Shot], float] | None = None
     stretches: bool = False
 
+    @cached_property
+    def _compiled(self) -> tuple[Problem, Statement] | None:
+        """A problem, and how compiled code takes it, if the others differ from it in nu alone."""
+        if self.condition is not None or not self.stretches or not isinstance(self.like, Orbit):
+            return None
+        problem = replace(self._problem((self.like.problem.nu,)), initial_state=None)
+        return problem, statement(problem, self.periods)
+
     def point(self, place: np.ndarray, normal: np.ndarray, along: np.ndarray) -> Point:
         """Return the point of the curve in the plane through `place` with the given normal.
 
@@ -107,6 +126,9 @@ class Curve:
         NoOrbit
             If Newton's method does not converge.
         """
+        if self._compiled is not None:
+            point = self._traced(self._compiled, place, normal, _MOST_CORRECTIONS)
+            return point if point.tangent @ along > 0.0 else point.reversed()
         origin, best = place, np.inf
         orbit = self._orbit(place)
         gradients = self._gradients(place, orbit, rough=True)
@@ -134,7 +156,43 @@ class Curve:
     def beside(self, point: Point, length: float) -> Point:
         """Return the point at a small distance along the tangent, where the curve still is."""
         place = point.place + length * point.tangent
+        if self._compiled is not None:
+            return self._traced(self._compiled, place, point.tangent, 0)
         return self._with_tangent(place, self._orbit(place), point.tangent)
+
+    def _traced(
+        self,
+        compiled: tuple[Problem, Statement],
+        place: np.ndarray,
+        normal: np.ndarray,
+        corrections: int,
+    ) -> Point:
+        """Return the point that compiled code finds."""
+        points, events, _ = trace(compiled[1], place, normal, self.units[0], corrections)
+        point, moved = self._found(compiled, points[0], events[0])
+        if moved.status != "complete":
+            raise NoOrbit(f"the motion ends with {moved.status}")
+        residual = np.abs(moved.end - point.place[:4]).max()
+        if corrections and not residual < LARGEST_RESIDUAL:
+            raise NoOrbit(f"the corrector stops at a residual of {residual:.1e}")
+        return point
+
+    def _found(
+        self, compiled: tuple[Problem, Statement], point: np.ndarray, events: np.ndarray
+    ) -> tuple[Point, Passage]:
+        """Return a point of the compiled code, and its motion."""
+        nu = float(point[4]) * self.units[0]
+        problem, stated = compiled
+        moved = passage_of(stated, self.units[0], point, events)
+        found = Point(
+            point[: curves.DIMENSIONS],
+            (nu,),
+            point[curves.TANGENT : curves.DETERMINANT],
+            float(point[curves.DETERMINANT]),
+            lambda: Orbit(replace(problem, nu=nu), self.periods, point[:4], moved),
+            moved,
+        )
+        return found, moved
 
     def _with_tangent(self, place: np.ndarray, orbit: Shot, along: np.ndarray) -> Point:
         gradients = self._gradients(place, orbit)
@@ -142,7 +200,7 @@ class Curve:
         if tangent @ along < 0.0:
             tangent = -tangent
         determinant = float(np.linalg.det(np.vstack([gradients, tangent])))
-        return Point(place, self._values(place), tangent, determinant, orbit)
+        return Point(place, self._values(place), tangent, determinant, lambda: orbit)
 
     def at(self, orbit: Shot, values: tuple[float, ...]) -> Point:
         """Return the point near `orbit` at a value of the first parameter, or near several.
@@ -166,33 +224,68 @@ class Curve:
         """Return the point one step ahead along the tangent."""
         return self.point(point.place + length * point.tangent, point.tangent, point.tangent)
 
-    def step_on(self, point: Point, length: float) -> tuple[Point, float]:
-        """Return the next point after `point` and the length of the step that reaches it.
+    def ahead(
+        self, point: Point, length: float, longest: float, limits: tuple[tuple[float, float], ...]
+    ) -> tuple[list[Point], float]:
+        """Return the next points after `point`, and the length of the step behind them.
 
-        The step is at most `length`, and shorter where the curve bends.
+        The first step is at most `length`, and shorter where the curve bends. Later ones grow. The
+        last point may be outside the limits or far away.
 
         Raises
         ------
         NoOrbit
             If the curve cannot be followed further.
         """
+        compiled = self._compiled
+        if compiled is None:
+            following, length = self._step_on(point, length)
+            size = max(following.orbit.y_max, -following.orbit.y_min)
+            grown = min(curves.GROWTH * length, longest * max(1.0, size / curves.LARGE))
+            return [following], grown
+        points, events, length = trace(
+            compiled[1],
+            point.place,
+            point.tangent,
+            self.units[0],
+            _MOST_CORRECTIONS,
+            _MOST_STEPS,
+            length,
+            longest,
+            limits[0],
+        )
+        if len(points) == 1:
+            raise NoOrbit("it bends too sharply")
+        return [
+            self._found(compiled, points[i], events[i])[0] for i in range(1, len(points))
+        ], length
+
+    def _step_on(self, point: Point, length: float) -> tuple[Point, float]:
+        """Return the next point after `point` and the length of the step that reaches it."""
         reason = "it bends too sharply"
-        while length > _SHORTEST_STEP:
+        while length > curves.SHORTEST_STEP:
             try:
                 following = self.step(point, length)
                 moved = following.place - point.place - length * point.tangent
-                straight = following.tangent @ point.tangent > _LEAST_ALIGNMENT
-                if straight and np.linalg.norm(moved) < _LARGEST_CORRECTION * length:
+                straight = following.tangent @ point.tangent > curves.LEAST_ALIGNMENT
+                if straight and np.linalg.norm(moved) < curves.LARGEST_CORRECTION * length:
                     return following, length
             except NoOrbit as error:
                 reason = str(error)
             length *= 0.5
         raise NoOrbit(reason)
 
+    def _problem(self, values: tuple[float, ...]) -> Problem:
+        """Return the problem at values of the parameters, with its state taken at the phase."""
+        problem = self.family(*values)
+        return (
+            problem
+            if problem.initial_phase == self.phase
+            else replace(problem, initial_phase=self.phase)
+        )
+
     def _orbit(self, place: np.ndarray) -> Shot:
-        problem = self.family(*self._values(place))
-        if problem.initial_phase != self.phase:
-            problem = replace(problem, initial_phase=self.phase)
+        problem = self._problem(self._values(place))
         return self.like.shot(problem, place[: -len(self.units)], self.periods)
 
     def _values(self, place: np.ndarray) -> tuple[float, ...]:
@@ -244,8 +337,9 @@ def clear_phase(orbit: Shot) -> float:
     phase = orbit.problem.initial_phase
     if orbit.repeats_after > 1:
         return phase
-    course = orbit.time_course(_PLACES)
-    away = np.minimum(np.abs(course.y), np.abs(course.y + orbit.problem.backlash))
-    if away[0] < 0.5 * away.max():
+    backlash = orbit.problem.backlash
+    if not is_clear.py_func(orbit.y, orbit.y_max, orbit.y_min, backlash):  # type: ignore[attr-defined]
+        course = orbit.time_course(_PLACES)
+        away = np.minimum(np.abs(course.y), np.abs(course.y + backlash))
         phase += int(np.argmax(away)) / _PLACES
     return float(phase % 1.0)

@@ -22,12 +22,11 @@ from gearmesh.dynamics.charts import (
     state_at_place,
     with_moments,
 )
-from gearmesh.dynamics.orbits import LARGEST_RESIDUAL, TimeCourse, sorted_multipliers
+from gearmesh.dynamics.orbits import TimeCourse, sorted_multipliers
 from gearmesh.errors import NoOrbit
 from gearmesh.model.contact import regime_of
-from gearmesh.model.motion import start
 from gearmesh.model.problem import Problem, State
-from gearmesh.solvers.full.runs import advance, integrate
+from gearmesh.solvers.full.runs import Propagation, integrate
 from gearmesh.solvers.reduced.variational import EVENT_SIZE
 from gearmesh.solvers.response import Response
 
@@ -37,10 +36,9 @@ _SHARES = (1.0, 0.1, 0.01, 0.001)
 _SMOOTH = 1e-8  # difference between orders without a kink
 _SIXTH = np.array([-1.0, 9.0, -45.0, 45.0, -9.0, 1.0]) / 60.0
 _FOURTH = np.array([0.0, 1.0, -8.0, 8.0, -1.0, 0.0]) / 12.0
-_MOST_CORRECTIONS = 30
-_SHORTEST_CORRECTION = 1.0 / 64.0
-_TRANSIENT = 1000  # mesh periods after which the end of a run serves as an initial state
-_SAME = 1e-8
+SAME = 1e-8
+"""Distance between states that count as the same, and between numbers that count as whole."""
+
 _LEAST_GROWTH = 1e-7
 
 
@@ -104,7 +102,7 @@ class GeneralOrbit:
         return self._response(1)
 
     def _response(self, samples_per_period: int) -> Response:
-        return _run(self.held, self.initial_state, self.periods, samples_per_period)
+        return run_of(self.held, self.initial_state, self.periods, samples_per_period)
 
     @property
     def y(self) -> float:
@@ -156,8 +154,12 @@ class GeneralOrbit:
     def gradient(self) -> np.ndarray:
         """Jacobian of the defect in the state, shape (k, k)."""
         if self.chart.rotation == HELD:
-            first = np.eye(self.state.size)[0]
-            pushed = _slope(self._end_under, self.state, first)
+            # Newton's method and tangents need the effect of the moments to a few digits only.
+            away = _DIFFERENCE * np.eye(self.state.size)[0]
+            ahead, behind = (
+                self.shot(self.problem, self.state + one, self.periods).end for one in (away, -away)
+            )
+            pushed = (ahead - behind) / (2.0 * _DIFFERENCE)
             others = self.jacobian[:, 1:] - np.eye(self.end.size)[:, 1:]
             return np.column_stack([pushed, others])
         return self.monodromy - np.eye(self.state.size)
@@ -185,15 +187,8 @@ class GeneralOrbit:
         return max(float(np.abs(others - one).min()) for one in self.multipliers)
 
     def _jacobian(self, step: float) -> np.ndarray:
-        along = np.eye(self.end.size)
-        return np.array([_slope(self._end_from, self.start, one, step) for one in along]).T
-
-    def _end_from(self, place: np.ndarray) -> np.ndarray:
-        held = self.held
-        return _end(held, state_at_place(held, place), self.periods)
-
-    def _end_under(self, state: np.ndarray) -> np.ndarray:
-        return self.shot(self.problem, state, self.periods).end
+        end = ends(self.held, self.periods)
+        return np.array([_slope(end, self.start, one, step) for one in np.eye(self.end.size)]).T
 
     @property
     def undamped(self) -> bool:
@@ -246,7 +241,7 @@ class GeneralOrbit:
         """
         if chart_of(problem).columns.shape != self.chart.columns.shape:
             raise NoOrbit("other coordinates are needed there: a term appears or vanishes")
-        return _shot(problem, state, periods, self.angle)
+        return shot_from(problem, state, periods, self.angle)
 
     def at_phase(self, phase: float) -> "GeneralOrbit":
         """Return the orbit with its state taken at another mesh phase.
@@ -259,12 +254,11 @@ class GeneralOrbit:
         share = (phase - self.problem.initial_phase) % 1.0
         if share == 0.0:
             return self
-        six = advance(replace(self.held, initial_state=self.initial_state), share, _TOLERANCE)
-        if six is None or self.repeats_after > 1:
-            raise NoOrbit("the state of the orbit can be taken at no other phase")
-        place = self.chart.place_of_six(six)
+        if self.repeats_after > 1:
+            raise NoOrbit("mesh periods differ, so the orbit stays at its initial phase")
+        place = ends(self.held, 1, share)(self.start)
         problem = replace(self.problem, initial_phase=phase)
-        return _shot(problem, self.chart.unknowns(place), self.periods, float(place[0]))
+        return shot_from(problem, self.chart.unknowns(place), self.periods, float(place[0]))
 
 
 def common_period(problem: Problem) -> int:
@@ -279,7 +273,7 @@ def common_period(problem: Problem) -> int:
     wheel_3, wheel_2 = problem.both_wheels
     both = math.lcm(wheel_3.teeth, wheel_2.teeth)
     harmonics = (*terms.torque_harmonics_3, *terms.torque_harmonics_2, *terms.backlash_harmonics)
-    if any(abs(one.order * both - round(one.order * both)) > _SAME for one in harmonics):
+    if any(abs(one.order * both - round(one.order * both)) > SAME for one in harmonics):
         raise NoOrbit("the excitation has frequencies of no common period with mesh and shafts")
     of_teeth = terms.tooth_factors or terms.pitch_errors_3 or terms.pitch_errors_2
     if of_teeth or not all(float(one.order).is_integer() for one in harmonics):
@@ -288,74 +282,6 @@ def common_period(problem: Problem) -> int:
         wheel_3.teeth if problem.eccentricity_3 else 1,
         wheel_2.teeth if problem.eccentricity_2 else 1,
     )
-
-
-def find_orbit(problem: Problem, periods: int = 1) -> GeneralOrbit:
-    """Return an orbit of least period `periods` near the initial state of the problem.
-
-    If the problem has none, the search begins at the end of a long run from rest.
-
-    Raises
-    ------
-    NoOrbit
-        If there is none, or if the excitation does not repeat.
-    """
-    common = common_period(problem)
-    if periods % common:
-        raise NoOrbit(
-            f"the excitation repeats after {common} mesh periods; periods has to be a multiple"
-        )
-    bare = replace(problem, initial_state=None)
-    place = chart_of(problem).place_of_six(np.concatenate(start(problem)))
-    if problem.initial_state is None:
-        return _correct(_settled(bare, place, common, periods))
-    passed = problem.start_period % common
-    if passed:
-        place = _end(bare, problem.initial_state, common - passed)
-    return _correct(_shot(bare, chart_of(problem).unknowns(place), periods, float(place[0])))
-
-
-def _settled(problem: Problem, place: np.ndarray, common: int, periods: int) -> GeneralOrbit:
-    """Return the motion at the end of a long run from a place.
-
-    If the mean rotation has to be held, a drive corrects it after every common period.
-    """
-    chart = chart_of(problem)
-    angle, pushed, duration = float(place[0]), 0.0, common * problem.period
-    for _ in range(math.ceil(_TRANSIENT / common)):
-        moved = _shot(problem, chart.unknowns(place, pushed), common, angle)
-        place = moved.end.copy()
-        if chart.rotation == HELD:
-            gained, sped = (moved.end - moved.start)[[0, chart.n]]
-            pushed -= float(sped) * duration
-            place[0] = angle
-            place[chart.n] = moved.start[chart.n] - gained / duration + 0.5 * sped
-    return _shot(problem, chart.unknowns(place, pushed * (periods / common) ** 2), periods, angle)
-
-
-def _correct(orbit: GeneralOrbit) -> GeneralOrbit:
-    """Return the orbit to which Newton's method leads."""
-    problem, periods = orbit.problem, orbit.periods
-    for _ in range(_MOST_CORRECTIONS):
-        correction = np.linalg.lstsq(orbit.gradient, -orbit.defect, rcond=1e-14)[0]
-        share = 1.0
-        shortest = 1.0 if orbit.residual < LARGEST_RESIDUAL else _SHORTEST_CORRECTION
-        while share >= shortest:
-            candidate = orbit.shot(problem, orbit.state + share * correction, periods)
-            if candidate.residual < (1.0 - 0.1 * share) * orbit.residual:
-                break
-            share *= 0.5
-        else:
-            break
-        orbit = candidate
-    if not orbit.residual < LARGEST_RESIDUAL:
-        raise NoOrbit(f"Newton's method stops at a residual of {orbit.residual:.1e}")
-    for shorter in range(orbit.repeats_after, periods, orbit.repeats_after):
-        if periods % shorter == 0:
-            end = _end(orbit.held, orbit.initial_state, shorter)
-            if np.abs(orbit.chart.closing(orbit.start, end)).max() < _SAME:
-                raise NoOrbit(f"Newton's method leads to an orbit of period {shorter}")
-    return orbit
 
 
 def _slope(
@@ -381,24 +307,22 @@ def _slope(
     return np.asarray(found)
 
 
-def _shot(problem: Problem, state: np.ndarray, periods: int, angle: float) -> GeneralOrbit:
+def shot_from(problem: Problem, state: np.ndarray, periods: int, angle: float) -> GeneralOrbit:
     """Return a motion from the unknowns of an orbit."""
     bare = replace(problem, initial_state=None)
     chart = chart_of(bare)
     held = with_moments(bare, chart.moments(bare, state, periods))
-    begun = state_at_place(held, chart.place(state, angle))
-    return GeneralOrbit(bare, periods, state, angle, _end(held, begun, periods))
+    end = ends(held, periods)(chart.place(state, angle))
+    return GeneralOrbit(bare, periods, state, angle, end)
 
 
-def _end(problem: Problem, begun: State, periods: int) -> np.ndarray:
-    """Return coordinates and rates after mesh periods."""
-    found = _run(problem, begun, periods, 0)
-    if found.final_state is None or found.final_state.coordinates is None:
-        raise NoOrbit(f"the motion cannot be integrated over the period: {found.status}")
-    return chart_of(problem).place_of_six(np.array(found.final_state.coordinates))
+def ends(problem: Problem, periods: int, share: float = 1.0) -> Callable[..., np.ndarray]:
+    """Return the function that gives where motions end after mesh periods, of their places."""
+    chart, motions = chart_of(problem), Propagation(problem, periods, _TOLERANCE, share)
+    return lambda place: chart.place_of_six(motions.end(chart.six(place)))
 
 
-def _run(problem: Problem, begun: State, periods: int, samples_per_period: int) -> Response:
+def run_of(problem: Problem, begun: State, periods: int, samples_per_period: int) -> Response:
     """Integrate whole mesh periods; they are kept if samples are wanted."""
     # A run takes whole revolutions: with a "revolution" of one period it takes any number of
     # mesh periods. The wheels keep their teeth.

@@ -15,12 +15,17 @@ from gearmesh.dynamics.starts import starts
 from gearmesh.errors import NoOrbit
 from gearmesh.model.contact import CONTACT_LOSS, INVERSE_MESH, regime_of
 from gearmesh.model.problem import Problem
+from gearmesh.solvers.reduced.curves import FARTHEST, LARGEST_RESIDUAL
 from gearmesh.solvers.reduced.period_map import (
+    FIXED,
     LONGEST_ANGLE,
     Passage,
     advance,
     passage,
+    passage_of,
     segments_of,
+    statement,
+    trace,
 )
 from gearmesh.solvers.reduced.runs import is_reducible
 from gearmesh.solvers.reduced.variational import (
@@ -35,17 +40,7 @@ from gearmesh.solvers.reduced.variational import (
     TURN,
 )
 
-LARGEST_RESIDUAL = 1e-11
-"""Largest |P^n(x) - x| of an orbit, in y_st and y_st Omega_s."""
-
-ROUNDED = 1e-14
-"""Residual that another correction does not improve."""
-
-FARTHEST = 100.0
-"""Size of y, in y_st, beyond which no orbits are searched for."""
-
 _MOST_CORRECTIONS = 40
-_SHORTEST_CORRECTION = 1.0 / 1024.0
 # States closer than this count as the same, so an orbit that returns so early has a shorter period.
 _SAME = 1e-8
 # An orbit without damping is unstable if a multiplier exceeds 1 in size by more than this.
@@ -202,7 +197,7 @@ class Orbit:
         turns = self._turns
         return np.column_stack([turns[:, TIME], turns[:, HEIGHT], -np.sign(turns[:, AFTER])])
 
-    @property
+    @cached_property
     def stiffness_jumps(self) -> np.ndarray:
         """The events at which C(t) jumps."""
         events = self.passage.events
@@ -322,14 +317,13 @@ def correct(problem: Problem, state: np.ndarray, periods: int = 1) -> Orbit:
         If it does not converge, or leads to an orbit of a shorter period.
     """
     problem = replace(problem, initial_state=None)
-    orbit = Orbit(problem, periods, state, passage(problem, state, periods))
-    for _ in range(_MOST_CORRECTIONS):
-        if orbit.passage.status != "complete":
-            raise NoOrbit(f"the motion ends with {orbit.passage.status}")
-        better = None if orbit.residual < ROUNDED else _improve(orbit)
-        if better is None:
-            break
-        orbit = better
+    stated = statement(problem, periods)
+    place = np.append(state, 1.0)
+    points, events, _ = trace(stated, place, FIXED, problem.nu, _MOST_CORRECTIONS)
+    moved = passage_of(stated, problem.nu, points[0], events[0])
+    orbit = Orbit(problem, periods, points[0, :4], moved)
+    if moved.status != "complete":
+        raise NoOrbit(f"the motion ends with {moved.status}")
     if not orbit.residual < LARGEST_RESIDUAL:
         raise NoOrbit(f"Newton's method stops at a residual of {orbit.residual:.1e}")
     for shorter in range(1, periods):
@@ -338,24 +332,6 @@ def correct(problem: Problem, state: np.ndarray, periods: int = 1) -> Orbit:
             if np.abs(end - orbit.state).max() < _SAME:
                 raise NoOrbit(f"Newton's method leads to an orbit of period {shorter}")
     return orbit
-
-
-def _improve(orbit: Orbit) -> Orbit | None:
-    """Return the orbit after one damped correction, or None if no correction improves it.
-
-    Damping helps far from an orbit. Near one a whole correction fails only because of rounding.
-    """
-    correction = newton_correction(orbit.passage, orbit.state)
-    shortest = 1.0 if orbit.residual < LARGEST_RESIDUAL else _SHORTEST_CORRECTION
-    share = 1.0
-    while share >= shortest:
-        state = orbit.state + share * correction
-        moved = passage(orbit.problem, state, orbit.periods)
-        candidate = replace(orbit, state=state, passage=moved)
-        if moved.status == "complete" and candidate.residual < (1.0 - 0.1 * share) * orbit.residual:
-            return candidate
-        share *= 0.5
-    return None
 
 
 def newton_correction(moved: Passage, state: np.ndarray) -> np.ndarray:

@@ -14,7 +14,19 @@ from scipy.optimize import brentq
 
 from gearmesh.dynamics.continuation import Curve, Point
 from gearmesh.dynamics.shots import Shot
-from gearmesh.solvers.reduced.variational import AFTER, BEFORE, VELOCITY
+from gearmesh.model.problem import Problem
+from gearmesh.solvers.reduced.period_map import Passage, segments_of
+from gearmesh.solvers.reduced.variational import (
+    AFTER,
+    BEFORE,
+    CROSSING,
+    HEIGHT,
+    KIND,
+    SEGMENT,
+    SWITCH,
+    TURN,
+    VELOCITY,
+)
 
 KINDS = ("fold", "flip", "torus", "branch_point", "grazing_front", "grazing_back", "switching")
 """All kinds of special points."""
@@ -25,6 +37,7 @@ Test = tuple[str, Callable[[Point], float]]
 Inner = tuple[Point, Point, float]
 """Points just inside the two ends of a piece of a branch, and their distance from the ends."""
 
+_MARGIN = 0.25
 _OFFSET = 1e-5
 _NARROWEST = 1e-6  # piece of a branch; roots of one test closer than this are not separated
 _NARROWEST_PIECE = 1e-11  # between two grazings, in which multipliers are tested
@@ -65,6 +78,82 @@ def search(
     """
     found = _search(curve, left, right, tests, inner or _inner_points(curve, left, right))
     return sorted(found, key=lambda item: float(left.tangent @ item[1].place))
+
+
+def suspects(points: list[Point]) -> list[int]:
+    """Return the numbers of the points behind which, up to the next, a special point may be.
+
+    A test function changes its sign there, or comes so close to 0 that it might pass it twice: it
+    is less than `_MARGIN` of what it changes nearby. All test functions of all points are computed
+    at once, so that only these pieces of a branch need a closer look.
+    """
+    every = list(range(len(points) - 1))
+    moved = [point.passage for point in points if point.passage and len(point.passage.events)]
+    if len(moved) < len(points):
+        return every
+    heights, crossings = _event_functions(points[0].orbit.problem, moved)
+    functions = np.column_stack([*_bifurcation_functions(points, moved), *heights])
+    with np.errstate(invalid="ignore"):
+        change = np.abs(np.diff(functions, axis=0))
+        nearby = change.copy()
+        nearby[1:] = np.fmax(nearby[1:], change[:-1])
+        nearby[:-1] = np.fmax(nearby[:-1], change[1:])
+        least = np.fmin(np.abs(functions[1:]), np.abs(functions[:-1]))
+        near = (functions[1:] * functions[:-1] <= 0.0) | (least < _MARGIN * nearby)
+    found = near.any(axis=1) | (np.diff(crossings) != 0)
+    return [i for i in every if found[i]]
+
+
+def _bifurcation_functions(points: list[Point], moved: list[Passage]) -> list[np.ndarray]:
+    """Return the functions of `_bifurcation_tests`, each at all points."""
+    jacobians = np.array([one.jacobian for one in moved])
+    damped = np.array([one.damping != 0.0 for one in moved])
+    return [
+        np.array([point.slope for point in points]),
+        np.array([point.determinant for point in points]),
+        np.linalg.det(jacobians + np.eye(4)),
+        np.where(damped, _pair_products(jacobians), np.nan),
+    ]
+
+
+def _pair_products(jacobians: np.ndarray) -> np.ndarray:
+    """Return the products of all mu_i mu_k - 1, from the characteristic polynomials.
+
+    The sums mu_1 mu_2 + mu_3 mu_4, ... are the roots of the resolvent cubic of the polynomial.
+    """
+    powers = [jacobians, *(np.linalg.matrix_power(jacobians, k) for k in (2, 3))]
+    one, two, three = (np.trace(power, axis1=1, axis2=2) for power in powers)
+    e_2 = (one**2 - two) / 2.0
+    e_3 = (one**3 - 3.0 * one * two + 2.0 * three) / 6.0
+    e_4 = np.linalg.det(jacobians)
+    s = 1.0 + e_4
+    cubic = s**3 - e_2 * s**2 + (one * e_3 - 4.0 * e_4) * s
+    return cubic - (one**2 * e_4 + e_3**2 - 4.0 * e_2 * e_4)
+
+
+def _event_functions(problem: Problem, moved: list[Passage]) -> tuple[list[np.ndarray], np.ndarray]:
+    """Return functions that pass 0 where events appear or vanish, each at all points.
+
+    They are the least distances of an extremum of y from the ends of regimes, and the velocities
+    where C(t) jumps, if y'' changes its sign there at the point or beside it. The second result is
+    the number of changes of regime.
+    """
+    stiffness = segments_of(problem)[:, 1]
+    events = np.concatenate([one.events for one in moved])
+    first = np.cumsum([0, *(len(one.events) for one in moved[:-1])])
+    kind, height = events[:, KIND], events[:, HEIGHT]
+    jumps = (kind == SWITCH) & (stiffness != np.roll(stiffness, 1))[events[:, SEGMENT].astype(int)]
+    margins = [
+        np.minimum.reduceat(np.where(kind == TURN, np.abs(height - level), np.inf), first)
+        for level in (0.0, -problem.backlash)
+    ]
+    velocities = events[jumps, VELOCITY].reshape(len(moved), -1)
+    turning = (events[jumps, BEFORE] * events[jumps, AFTER] < 0.0).reshape(velocities.shape)
+    beside = turning.copy()
+    beside[1:] |= turning[:-1]
+    beside[:-1] |= turning[1:]
+    velocities[~beside] = np.nan
+    return [*margins, *velocities.T], np.add.reduceat(kind == CROSSING, first, dtype=int)
 
 
 def special_points(curve: Curve, left: Point, right: Point) -> list[tuple[str, Point]]:

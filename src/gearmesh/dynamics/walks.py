@@ -7,9 +7,9 @@ import numpy as np
 from scipy.optimize import brentq
 
 from gearmesh.dynamics.continuation import Curve, Point, clear_phase
-from gearmesh.dynamics.orbits import FARTHEST
 from gearmesh.dynamics.special_points import flip_test
 from gearmesh.errors import NoOrbit
+from gearmesh.solvers.reduced.curves import FARTHEST
 
 Limits = tuple[tuple[float, float], ...]
 """Range of each parameter."""
@@ -17,7 +17,7 @@ Limits = tuple[tuple[float, float], ...]
 LONGEST_STEP = 0.03
 """Longest step along a branch, in y_st and shares of the range of the parameter.
 
-It grows in proportion to motions of more than `_LARGE`.
+It grows in proportion to motions of more than `gearmesh.solvers.reduced.curves.LARGE`.
 """
 
 MOST_POINTS = 4000
@@ -26,11 +26,9 @@ MOST_POINTS = 4000
 LIMIT, CLOSED, HALVED, FAR = "limit", "closed", "half the period", "far"
 """Ends of a branch: at a limit of the parameter; at its own first point; at a flip of an orbit of
 half the period, behind which the same orbits follow half a period later; at motions larger than
-`gearmesh.dynamics.orbits.FARTHEST`."""
+`gearmesh.solvers.reduced.curves.FARTHEST`."""
 
 _FIRST_STEP = 0.25  # of the longest
-_GROWTH = 1.4
-_LARGE = 5.0
 _AT_LIMIT = 1e-9  # share of the range of the parameter
 _SAME = 1e-7  # distance between two states that are the same
 _REACH = 0.3  # length of the branch of half the period on which its flip is searched for
@@ -92,32 +90,32 @@ def _walk(piece: Piece, limits: Limits, longest: float) -> Walk:
     """Follow the branch from the only point of `piece`."""
     start, pieces = piece.points[0], [piece]
     length = _FIRST_STEP * longest
-    for _ in range(MOST_POINTS):
+    while sum(len(piece.points) for piece in pieces) < MOST_POINTS:
         curve, point = pieces[-1].curve, pieces[-1].points[-1]
         try:
             phase = clear_phase(point.orbit)
             if phase != curve.phase:
                 curve, point = curve.moved_to(phase, point)
                 pieces.append(Piece(curve, [point]))
-            following, length = curve.step_on(point, length)
+            ahead, length = curve.ahead(point, length, longest, limits)
         except NoOrbit as error:
             flip = _flip_at_end(curve, point)
             return Walk(pieces, HALVED if flip else f"the branch ends: {error}", flip)
-        if _halves(curve) and _half_way(point) @ _half_way(following) < 0.0:
-            return Walk(pieces, HALVED, _flip_at_end(curve, point))
-        for i, (low, high) in enumerate(limits):
-            if not low <= following.values[i] <= high:
-                edge = low if following.values[i] < low else high
-                if abs(edge - point.values[i]) > _AT_LIMIT * curve.units[i]:
-                    pieces[-1].points.append(_between(curve, point, following, edge, i))
-                return Walk(pieces, LIMIT, [])
-        pieces[-1].points.append(following)
-        if _is_back(curve, point, following, start):
-            return Walk(pieces, CLOSED, [])
-        size = max(following.orbit.y_max, -following.orbit.y_min)
-        if size > FARTHEST:
+        for following in ahead:
+            if _halves(curve) and _half_way(point) @ _half_way(following) < 0.0:
+                return Walk(pieces, HALVED, _flip_at_end(curve, point))
+            for i, (low, high) in enumerate(limits):
+                if not low <= following.values[i] <= high:
+                    edge = low if following.values[i] < low else high
+                    if abs(edge - point.values[i]) > _AT_LIMIT * curve.units[i]:
+                        pieces[-1].points.append(_between(curve, point, following, edge, i))
+                    return Walk(pieces, LIMIT, [])
+            pieces[-1].points.append(following)
+            if _is_back(curve, point, following, start):
+                return Walk(pieces, CLOSED, [])
+            point = following
+        if max(point.orbit.y_max, -point.orbit.y_min) > FARTHEST:
             return Walk(pieces, FAR, [])
-        length = min(_GROWTH * length, longest * max(1.0, size / _LARGE))
     return Walk(pieces, "too many points", [])
 
 

@@ -132,7 +132,9 @@ def follow(orbit: Orbit, parameter: str, limits: Limits) -> Branch:
     Returns
     -------
     Branch
-        Orbits along the branch, and its special points, located to 1e-8 in the parameter.
+        Orbits along the branch, and its special points, located to 1e-8 in the parameter. With
+        terms that only the general solver knows, `switching` points are not located, and a `torus`
+        closer than 1e-6 to a grazing only to 1e-7.
 
     Raises
     ------
@@ -199,7 +201,7 @@ def follow_special(
     first, second = (
         _limits(orbit.pair, name, ends) for name, ends in zip(parameters, limits, strict=True)
     )
-    bare = special_points.SpecialPoint(point.kind, point.nu, point.parameters, orbit.reduced)
+    bare = special_points.SpecialPoint(point.kind, point.nu, point.parameters, orbit.found)
     found = special_curves.follow_special(bare, parameters, (first, second), family, values)
     return SpecialCurve(point, found)
 

@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from gearmesh.dynamics import general_orbits, orbits
+from gearmesh.dynamics import general_search, orbits
 from gearmesh.dynamics.general_orbits import GeneralOrbit
 from gearmesh.dynamics.shots import Shot
 from gearmesh.dynamics.starts import coordinates
@@ -55,7 +55,7 @@ class Orbit:
     def reduced(self) -> orbits.Orbit:
         """The orbit in dimensionless form; raises NoOrbit if it is not of the reduced system."""
         if not isinstance(self.found, orbits.Orbit):
-            raise NoOrbit("branches: only orbits of the reduced system can be followed")
+            raise NoOrbit("this needs an orbit of the reduced system, and the pair has other terms")
         return self.found
 
     @property
@@ -89,6 +89,16 @@ class Orbit:
     def signature(self) -> tuple[str, ...]:
         """Regimes of the mesh in their order over the orbit's own period."""
         return tuple(REGIMES[regime] for regime in self.found.signature)
+
+    @property
+    def holding_moments(self) -> tuple[float, float]:
+        """Constant moments that hold the speed of an eccentric pair, besides those stated.
+
+        On wheels 3 and 2, as shares of M_3 and M_2; 0 if nothing depends on the mean rotation. They
+        make up for what the mesh takes out of it, and a run under them repeats.
+        """
+        found = self.found
+        return found.holding_moments if isinstance(found, GeneralOrbit) else (0.0, 0.0)
 
     @property
     def residual(self) -> float:
@@ -156,14 +166,15 @@ def find_orbit(
     Parameters
     ----------
     pair : Pair
-        The gear pair, without eccentricity and without damping of the rotations to the frame.
+        The gear pair. Where eccentric wheels would leave the stated speed, the orbit is that of a
+        drive which holds it, see `Orbit.holding_moments`.
     variant : str or Variant
         Which damping terms act where.
     nu : float or str
         Mesh frequency ν_s, or the speed of wheel 3, as ``"3000 rpm"``.
     periods : int
-        Its least period, in mesh periods. If single teeth differ, a multiple of the mesh periods
-        after which the same teeth meet.
+        Its least period, in mesh periods. If single teeth differ or wheels are eccentric, a
+        multiple of the mesh periods after which the same teeth meet, or the wheels have turned.
     start : tuple or Orbit, optional
         (y, dy/dτ_s) at the initial phase near the orbit, each with its unit or as a number of
         static deflections; or an orbit nearby. By default several initial conditions are tried;
@@ -201,5 +212,5 @@ def find_orbit(
     if is_reducible(problem):
         found = orbits.find_orbit(problem, periods, None if begun is None else coordinates(begun))
     else:
-        found = general_orbits.find_orbit(replace(problem, initial_state=begun), periods)
+        found = general_search.find_orbit(replace(problem, initial_state=begun), periods)
     return Orbit(pair, chosen, frequency, found)

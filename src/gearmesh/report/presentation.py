@@ -118,7 +118,8 @@ def quantity(value: Any, unit: str) -> str:
         if any(isinstance(item, tuple) for item in value):
             rows = (f"({', '.join(quantity(part, '1') for part in item)})" for item in value)
             return ", ".join(rows) + ("" if unit == "1" else f" {unit}")
-        return ", ".join(quantity(item, unit) for item in dict.fromkeys(value)) or "none"
+        shown = value[:1] if len(set(value)) == 1 else value
+        return ", ".join(quantity(item, unit) for item in shown) or "none"
     if unit == "rad":
         return f"{number(math.degrees(value))}°"
     return number(value) + ("" if unit == "1" else f" {unit.replace('*', ' ')}")

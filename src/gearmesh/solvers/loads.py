@@ -33,6 +33,8 @@ class Loads:
         Its greatest value less its least.
     force_bearing_3_max, force_bearing_2_max : float
         Greatest amount of the force on the bearing of each wheel, along the mesh line.
+    force_bearing_3_z_max, force_bearing_2_z_max : float
+        The same across it; not a number in the reduced system, which does not contain it.
     """
 
     force_max: float
@@ -41,6 +43,8 @@ class Loads:
     transmission_error_range: float
     force_bearing_3_max: float
     force_bearing_2_max: float
+    force_bearing_3_z_max: float
+    force_bearing_2_z_max: float
 
 
 def loads(problem: Problem, samples: Samples) -> Loads:
@@ -48,14 +52,16 @@ def loads(problem: Problem, samples: Samples) -> Loads:
     extremes = samples.extremes
     if extremes is None:
         extremes = _on_samples(problem, samples)
-    force, error, bearing_3, bearing_2 = extremes
+    force, error, *bearings = extremes
     return Loads(
         force_max=float(force[1]),
         force_min=float(force[0]),
         transmission_error_rms=float(samples.transmission_error.std()),
         transmission_error_range=float(np.ptp(error)),
-        force_bearing_3_max=float(np.abs(bearing_3).max()),
-        force_bearing_2_max=float(np.abs(bearing_2).max()),
+        force_bearing_3_max=float(np.abs(bearings[0]).max()),
+        force_bearing_2_max=float(np.abs(bearings[1]).max()),
+        force_bearing_3_z_max=float(np.abs(bearings[2]).max()),
+        force_bearing_2_z_max=float(np.abs(bearings[3]).max()),
     )
 
 
@@ -68,7 +74,8 @@ def _on_samples(problem: Problem, samples: Samples) -> np.ndarray:
         samples.force_bearing_3,
         samples.force_bearing_2,
     )
-    return np.array([(row.min(), row.max()) for row in rows])
+    missing = [(np.nan, np.nan)] * 2
+    return np.array([*((row.min(), row.max()) for row in rows), *missing])
 
 
 def _at_switches(problem: Problem, samples: Samples) -> list[np.ndarray]:

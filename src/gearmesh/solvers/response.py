@@ -60,9 +60,11 @@ class Samples:
     F_st, `regime` as in `gearmesh.model.contact`. `force_normal` is the elastic and the damping
     force, `transmission_error` the sum of R_b phi of both wheels, and `force_bearing_3` and
     `force_bearing_2` what the bodies exert on their bearings along the mesh line.
+    `force_bearing_3_z` and `force_bearing_2_z` act across it; the reduced system does not contain
+    them.
 
-    `extremes` has the least and greatest `force_normal`, `transmission_error`, `force_bearing_3`
-    and `force_bearing_2`, shape (4, 2), where the solver has located them between the samples.
+    `extremes` has the least and greatest `force_normal`, `transmission_error` and the four forces
+    on bearings in this order, shape (6, 2), where the solver has located them between the samples.
     """
 
     time: np.ndarray
@@ -78,6 +80,8 @@ class Samples:
     force_bearing_2: np.ndarray
     transmission_error: np.ndarray
     regime: np.ndarray
+    force_bearing_3_z: np.ndarray | None = None
+    force_bearing_2_z: np.ndarray | None = None
     extremes: np.ndarray | None = None
 
 

@@ -22,10 +22,11 @@ def signs_act(problem: Problem) -> bool:
     )
 
 
-def embedding(problem: Problem) -> np.ndarray:
+def embedding(problem: Problem, sampled: bool = False) -> np.ndarray:
     """Return the six coordinates as sums of those that are integrated, shape (6, n).
 
-    The columns are orthogonal.
+    The columns are orthogonal. Those that y depends on stand first. A run that is `sampled` has the
+    displacements across the mesh line besides, for the forces on the bearings.
     """
     if problem.has_run_out:
         return np.eye(6)
@@ -41,10 +42,13 @@ def embedding(problem: Problem) -> np.ndarray:
     ]
     if problem.terms.backlash_follows_centres:
         columns += [{Y_3: 1.0}, {Y_2: 1.0}, {Z_3: 1.0}, {Z_2: 1.0}]
+        sampled = False
     elif bodies[0] == bodies[1]:
         columns += [{Y_3: 0.5, Y_2: -0.5}]
     else:
         columns += [{Y_3: 1.0}, {Y_2: 1.0}]
+    if sampled:
+        columns += [{Z_3: 1.0}, {Z_2: 1.0}]
     found = np.zeros((6, len(columns)))
     for i, column in enumerate(columns):
         for j, share in column.items():

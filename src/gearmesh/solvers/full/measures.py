@@ -6,8 +6,7 @@ from gearmesh.model.contact import CONTACT_LOSS, INVERSE_MESH
 from gearmesh.solvers.compilation import inner
 from gearmesh.solvers.full.roots import evaluate, evaluate_with_slope
 from gearmesh.solvers.full.tape import (
-    BEARING_2,
-    BEARING_3,
+    BEARINGS,
     FRICTION,
     NORMAL,
     STIFFNESS,
@@ -17,7 +16,7 @@ from gearmesh.solvers.full.tape import (
 )
 from gearmesh.solvers.response import MAXIMUM, MEASURED, MINIMUM
 
-EXTREMAL = (NORMAL, TRANSMISSION, BEARING_3, BEARING_2)
+EXTREMAL = (NORMAL, TRANSMISSION, *BEARINGS)
 """Rows whose least and greatest values are located where they are sampled."""
 
 SUMMARY = np.dtype(
@@ -35,7 +34,8 @@ SAMPLE = np.dtype(
         (name, np.float64)
         for name in (
             *("time", "y", "v", "a", "stiffness", "friction", "regime"),
-            *("normal", "transmission_error", "bearing_3", "bearing_2"),
+            *("normal", "transmission_error"),
+            *("bearing_3", "bearing_2", "bearing_3_z", "bearing_2_z"),
         )
     ]
 )
@@ -90,8 +90,10 @@ def sample(case, mode, series, until, samples, per_period, summary):
         sample.regime = CONTACT_LOSS if mode.parted else mode.regime
         sample.normal = evaluate(series[NORMAL], degree, since)
         sample.transmission_error = evaluate(series[TRANSMISSION], degree, since)
-        sample.bearing_3 = evaluate(series[BEARING_3], degree, since)
-        sample.bearing_2 = evaluate(series[BEARING_2], degree, since)
+        sample.bearing_3 = evaluate(series[BEARINGS[0]], degree, since)
+        sample.bearing_2 = evaluate(series[BEARINGS[1]], degree, since)
+        sample.bearing_3_z = evaluate(series[BEARINGS[2]], degree, since)
+        sample.bearing_2_z = evaluate(series[BEARINGS[3]], degree, since)
         summary.samples += 1
 
 

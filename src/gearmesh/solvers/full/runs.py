@@ -12,6 +12,7 @@ from dataclasses import replace
 import numpy as np
 from numba import njit
 
+from gearmesh.errors import NoOrbit
 from gearmesh.model.contact import CONTACT_LOSS, dynamic_force
 from gearmesh.model.motion import ROTATION_2, ROTATION_3, Y_2, Y_3, start
 from gearmesh.model.problem import Branches, Problem, State
@@ -22,12 +23,13 @@ from gearmesh.solvers.full import kernel
 from gearmesh.solvers.full.coordinates import embedding, kinds_of_period, projected, signs_act
 from gearmesh.solvers.full.measures import SAMPLE, SUMMARY
 from gearmesh.solvers.full.recurrences import recurrences
-from gearmesh.solvers.full.roots import MAX_DEGREE
+from gearmesh.solvers.full.roots import MAX_DEGREE, TABLE_ROWS, WIDTH
 from gearmesh.solvers.full.series import CASE, CONTINUED, MODE, SEGMENT
 from gearmesh.solvers.response import (
     EXTREMUM,
     LOOSENING,
     OK,
+    STATUSES,
     Companion,
     Response,
     Samples,
@@ -99,14 +101,49 @@ def integrate(
     )
 
 
-def advance(problem: Problem, share: float, tolerance: float) -> np.ndarray | None:
-    """Return the six coordinates and their rates after a share of a mesh period.
+class Propagation:
+    """Motions of one problem over mesh periods, from one start after the other.
 
-    The result is None if the run fails.
+    Parameters
+    ----------
+    problem : Problem
+        Its initial state and its revolutions do not matter.
+    periods : int
+        Mesh periods from t = 0.
+    tolerance : float
+    share : float
+        Share of each mesh period that is integrated; with one period, where the motion ends.
     """
-    short = replace(problem, wheels=problem.both_wheels, teeth=1, revolutions=1, kept_revolutions=0)
-    run = _Run(short, tolerance, 0, suitable_order(tolerance), share=share)
-    return run.all_six() if run.summary["status"] == OK else None
+
+    def __init__(
+        self, problem: Problem, periods: int, tolerance: float, share: float = 1.0
+    ) -> None:
+        # A run takes whole revolutions: with a "revolution" of one period it takes any number of
+        # mesh periods. The wheels keep their teeth.
+        run = replace(
+            problem,
+            wheels=problem.both_wheels,
+            teeth=1,
+            revolutions=periods,
+            kept_revolutions=0,
+            initial_state=None,
+        )
+        self._run = _Run(run, tolerance, 0, suitable_order(tolerance), share=share)
+
+    def end(self, six: np.ndarray) -> np.ndarray:
+        """Return where the motion from six coordinates and their rates ends, shape (12,).
+
+        Raises
+        ------
+        NoOrbit
+            If it cannot be integrated.
+        """
+        self._run.start = six
+        self._run.integrate(0, 0)
+        if self._run.summary["status"] != OK:
+            status = STATUSES[self._run.summary["status"]]
+            raise NoOrbit(f"the motion cannot be integrated over the period: {status}")
+        return self._run.all_six()
 
 
 class _Run:
@@ -127,7 +164,7 @@ class _Run:
         share: float = 1.0,
     ) -> None:
         self.problem = problem
-        self.embedding = embedding(problem)
+        self.embedding = embedding(problem, samples_per_period > 0)
         kinds, variants = kinds_of_period(problem)
         found = recurrences(problem, kinds, samples_per_period > 0)
         self._arguments = (
@@ -136,17 +173,17 @@ class _Run:
             variants,
             (found.numbers, found.branches),
         )
-        self._series = np.zeros((found.height, MAX_DEGREE + 1))
+        self._series = np.zeros((found.height + TABLE_ROWS + 1, WIDTH))
         self.extrema = np.zeros(0, EXTREMUM)
         self.start = np.concatenate(start(problem))
         self.start[ROTATION_3] += displacement
-        self._integrate(samples_per_period, _EXTREMA_PER_PERIOD * problem.kept_periods)
+        self.integrate(samples_per_period, _EXTREMA_PER_PERIOD * problem.kept_periods)
         found = self.summary["extrema"]
         if found > self.extrema.size:
-            self._integrate(samples_per_period, found)
+            self.integrate(samples_per_period, found)
         self.extrema = self.extrema[:found]
 
-    def _integrate(self, samples_per_period: int, room: int) -> None:
+    def integrate(self, samples_per_period: int, room: int) -> None:
         summaries = np.zeros(1, SUMMARY)
         summaries["y_max"], summaries["y_min"] = -np.inf, np.inf
         summaries["least_contact_force"] = np.inf
@@ -249,6 +286,7 @@ def _case(problem: Problem, tolerance: float, order: int, coordinates: int) -> n
         (wheel.bearing_stiffness[1], wheel.bearing_damping[1]) for wheel in problem.both_wheels
     ]
     case["coordinates"] = coordinates
+    case["acting"] = embedding(problem).shape[1]
     case["segments"] = len(segments(problem))
     case["first_kept"] = problem.periods - problem.kept_periods
     case["tolerance"] = tolerance
@@ -259,7 +297,7 @@ def _case(problem: Problem, tolerance: float, order: int, coordinates: int) -> n
     return case
 
 
-def _segments(problem: Problem, share: float) -> np.ndarray:
+def _segments(problem: Problem, share: float = 1.0) -> np.ndarray:
     """Return the segments of a share of a mesh period as the kernel takes them."""
     parts = [
         (min(part.end, share) * problem.period, part.gamma, len(part.pairs))
@@ -284,6 +322,8 @@ def _samples(rows: np.ndarray, extremes: np.ndarray) -> Samples:
         force_friction=columns["friction"],
         force_bearing_3=columns["bearing_3"],
         force_bearing_2=columns["bearing_2"],
+        force_bearing_3_z=columns["bearing_3_z"],
+        force_bearing_2_z=columns["bearing_2_z"],
         transmission_error=columns["transmission_error"],
         regime=regime,
         extremes=extremes,

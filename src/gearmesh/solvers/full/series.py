@@ -44,6 +44,7 @@ CASE = np.dtype(
         ("masses", np.float64, 2),
         ("pulls", np.float64, (2, 2)),
         ("coordinates", np.int64),
+        ("acting", np.int64),
         ("segments", np.int64),
         ("start_period", np.int64),
         ("periods", np.int64),
@@ -58,7 +59,8 @@ CASE = np.dtype(
 """What the kernel needs of a run beside its tape, and the settings of the solver.
 
 `masses` are those of both bodies, and `pulls` the stiffness and damping of their bearings across
-the mesh line. `segments` is the number of segments in a mesh period.
+the mesh line. `acting` counts the coordinates that y depends on, and `segments` the segments in a
+mesh period.
 """
 
 SEGMENT = np.dtype([("end", np.float64), ("gamma", np.float64), ("pairs", np.int64)])

@@ -23,17 +23,19 @@ from gearmesh.solvers.full.coordinates import embedding, signs_act
 COORDINATES, RATES = 0, 6
 TIME, CONSTANT, SIGNS = range(12, 15)
 Y, V, SWING, BRACKET, GAP, CONTACT, ELASTIC, FRICTION, STIFFNESS, NORMAL = range(15, 25)
-TRANSMISSION, BEARING_3, BEARING_2 = range(25, 28)
-PRESSING, DEPTH = 28, 31
-FIRST_FREE = 34
+TRANSMISSION = 25
+BEARINGS = (26, 27, 28, 29)
+PRESSING, DEPTH = 30, 33
+FIRST_FREE = 36
 """Rows of the table of series.
 
 The first six are the coordinates, the next six their rates. TIME counts mesh periods. CONSTANT
 is 1, SIGNS the product of both signs of eq. (6). V and BRACKET are the rates of Y and
 SWING. GAP is y + s(t). CONTACT and NORMAL are the force of flanks that touch, and what of it acts
-(`gearmesh.model.motion.Forces`). TRANSMISSION is the transmission error, BEARING_3 and BEARING_2
-are what the bodies exert on their bearings along the mesh line. PRESSING and DEPTH have a row for
-each pair of teeth that may touch singly: 1 where it presses, else 0, and how deep it is in contact.
+(`gearmesh.model.motion.Forces`). TRANSMISSION is the transmission error. BEARINGS are what the
+bodies exert on their bearings: of wheels 3 and 2 along the mesh line, then across it. PRESSING and
+DEPTH have a row for each pair of teeth that may touch singly: 1 where it presses, else 0, and how
+deep it is in contact.
 """
 
 SUM, MOVES, ACCELERATE, PRODUCT, SIGNED, WAVE, SINE, ROOT, ROUND, ENTRY, POWER = range(11)
@@ -232,7 +234,9 @@ def laws_of(problem: Problem) -> Problem:
     return replace(problem, nu=TURN, revolutions=1, kept_revolutions=0, initial_state=None)
 
 
-def record(laws: Problem, segments: Iterable[float]) -> list[list[list[Operation]]]:
+def record(
+    laws: Problem, segments: Iterable[float], sampled: bool = False
+) -> list[list[list[Operation]]]:
     """Record the equations of motion.
 
     Parameters
@@ -241,6 +245,8 @@ def record(laws: Problem, segments: Iterable[float]) -> list[list[list[Operation
         From `laws_of`.
     segments : iterable of float
         A mesh phase in each segment.
+    sampled : bool
+        As for `gearmesh.solvers.full.coordinates.embedding`.
 
     Returns
     -------
@@ -248,7 +254,7 @@ def record(laws: Problem, segments: Iterable[float]) -> list[list[list[Operation
         For each of the `N_BRANCHES` of each segment the operations of y, of the accelerations, of
         the normal force, and of what else is sampled; nothing for a branch that cannot occur.
     """
-    columns = embedding(laws)
+    columns = embedding(laws, sampled)
     branches: list[list[list[Operation]]] = []
     signed = signs_act(laws)
     for segment in segments:
@@ -316,13 +322,12 @@ def _record(
     trace.name(STIFFNESS, mesh.stiffness)
     trace.name(NORMAL, mesh.normal)
     trace.name(TRANSMISSION, q[motion.ROTATION_3] + q[motion.ROTATION_2])
-    bearing_3, bearing_2, *_ = motion.bearing_pulls(problem, q, v)
-    trace.name(BEARING_3, bearing_3)
-    trace.name(BEARING_2, bearing_2)
+    for row, pull in zip(BEARINGS, motion.bearing_pulls(problem, q, v), strict=True):
+        trace.name(row, pull)
     everything = trace.operations
     needed = _needed(everything[:forced], wanted)
     pressing = _needed(everything, [NORMAL]) - needed
-    sampled = [*range(STIFFNESS, BEARING_2 + 1), FRICTION]
+    sampled = [*range(STIFFNESS, TRANSMISSION + 1), *BEARINGS, FRICTION]
     outputs = _needed(everything, sampled) - needed - pressing
     return [
         [everything[i] for i in sorted(needed) if i < moved],

@@ -11,7 +11,7 @@ from gearmesh.model.problem import Problem
 from gearmesh.model.segments import segments
 from gearmesh.solvers.compilation import persistent
 from gearmesh.solvers.limits import highest_frequency
-from gearmesh.solvers.reduced import variational
+from gearmesh.solvers.reduced import curves, variational
 from gearmesh.solvers.reduced.deviations import DEVIATIONS, SIZE
 
 TOLERANCE = 1e-16
@@ -23,20 +23,28 @@ LONGEST_ANGLE = 1.0
 STATUSES = ("complete", "too many steps", "too many events", "diverged")
 """Outcomes of a passage, by their number in `gearmesh.solvers.reduced.variational`."""
 
+Statement = tuple[np.ndarray, np.ndarray, float, np.ndarray, int, float, float, float]
+"""A problem and a number of mesh periods, as `gearmesh.solvers.reduced.curves.trace` takes them."""
+
 _EVENTS_PER_PERIOD = 64
 _NO_SAMPLES = np.empty((0, 4))
 
+FIXED = np.eye(curves.DIMENSIONS)[SIZE]
+"""Normal of the plane of all states at one mesh frequency."""
 
-def _build_propagation(key: str, cache: bool) -> Callable[..., tuple[int, int, float, float]]:
+
+def _build_trace(key: str, cache: bool) -> Callable[..., tuple[int, float]]:
     @njit(cache=cache, nogil=True)
-    def compiled(*arguments):  # type: ignore[no-untyped-def]
+    def compiled(stated, unit, corrections, length, longest, limits, points, events, samples):  # type: ignore[no-untyped-def]
         key  # noqa: B018 (see persistent)
-        return variational.propagate(*arguments)
+        return curves.trace(
+            stated, unit, corrections, length, longest, limits, points, events, samples
+        )
 
     return compiled
 
 
-_propagate = persistent(_build_propagation)
+_trace = persistent(_build_trace)
 
 
 @dataclass(frozen=True, slots=True)
@@ -99,66 +107,110 @@ def passage(
     longest_angle : float
         Bound of a step times the highest natural frequency.
     """
-    parts = segments_of(problem)
-    events = np.empty((_EVENTS_PER_PERIOD * periods, variational.EVENT_SIZE))
+    stated = statement(problem, periods, longest_angle)
     samples = np.empty((samples_per_period * periods, 4))
-    visits = periods * len(parts)
-    (outcome, n_events, damping, least_force), end, jacobian = _move(
-        problem, parts, visits, state, events, longest_angle, samples, samples_per_period
+    points, events, _ = trace(stated, np.append(state, 1.0), FIXED, problem.nu, samples=samples)
+    return passage_of(stated, problem.nu, points[0], events[0], samples)
+
+
+def statement(
+    problem: Problem, periods: int = 1, longest_angle: float = LONGEST_ANGLE
+) -> Statement:
+    """Return a problem and a number of mesh periods in the form that the compiled code takes."""
+    parts = segments_of(problem)
+    return (
+        parts,
+        np.array([problem.lubricant, problem.material]),
+        float(problem.backlash),
+        _bearings(problem),
+        periods * len(parts),
+        longest_angle / highest_frequency(problem),
+        TOLERANCE,
+        float(problem.nu),
     )
-    two_mu, _, bearing = _bearings(problem)
+
+
+def trace(
+    stated: Statement,
+    place: np.ndarray,
+    normal: np.ndarray,
+    unit: float,
+    corrections: int = 0,
+    steps: int = 0,
+    length: float = 0.0,
+    longest: float = 0.0,
+    limits: tuple[float, float] = (0.0, 0.0),
+    samples: np.ndarray = _NO_SAMPLES,
+) -> tuple[np.ndarray, np.ndarray, float]:
+    """Return points, their events, and the next length, of `gearmesh.solvers.reduced.curves.trace`.
+
+    Parameters
+    ----------
+    stated : tuple
+        Of `statement`.
+    place, normal : ndarray, shape (5,)
+        The first point, and the normal of the plane in which it is corrected.
+    unit, corrections, length, longest, limits
+        As for the compiled function.
+    steps : int
+        Most points behind the first.
+    samples : ndarray, shape (n, 4)
+        Filled with samples of the last point, evenly over the mesh periods.
+    """
+    periods = stated[4] // len(stated[0])
+    points = np.empty((steps + 2, curves.POINT_SIZE))
+    events = np.empty((steps + 2, _EVENTS_PER_PERIOD * periods, variational.EVENT_SIZE))
+    points[0, : curves.DIMENSIONS] = place
+    points[0, curves.TANGENT : curves.DETERMINANT] = normal
+    low, high = limits
+    count, length = _trace(
+        stated,
+        unit,
+        corrections,
+        length,
+        longest,
+        (low, high),
+        points,
+        events,
+        samples,
+    )
+    return points[:count], events, length
+
+
+def passage_of(
+    stated: Statement,
+    unit: float,
+    point: np.ndarray,
+    events: np.ndarray,
+    samples: np.ndarray = _NO_SAMPLES,
+) -> Passage:
+    """Return what the compiled code found of a point."""
+    jacobian = point[curves.JACOBIAN : curves.TANGENT].reshape(SIZE, DEVIATIONS)
+    damping, (two_mu, _, bearing) = float(point[curves.DAMPING]), stated[3]
+    duration = 2.0 * math.pi * (stated[4] // len(stated[0])) / (float(point[SIZE]) * unit)
     return Passage(
-        STATUSES[outcome],
-        end,
+        STATUSES[int(point[curves.OUTCOME])],
+        point[curves.END : curves.JACOBIAN],
         jacobian[:, :SIZE],
         jacobian[:, SIZE],
-        events[:n_events],
+        events[: int(point[curves.N_EVENTS])],
         damping,
-        -(1.0 + two_mu) * damping - bearing * periods * problem.period,
-        least_force,
+        -(1.0 + two_mu) * damping - bearing * duration,
+        float(point[curves.LEAST_FORCE]),
         samples,
     )
 
 
 def advance(problem: Problem, state: np.ndarray, share: float) -> np.ndarray:
     """Return the state that the motion reaches after a share of a mesh period, 0 to 1."""
-    parts = segments_of(problem)
+    parts, *others = statement(problem)
     ends = np.cumsum(parts[:, 0])
     begins = ends - parts[:, 0]
     parts[:, 0] = np.minimum(ends, share * problem.period) - begins
     parts = parts[parts[:, 0] > 0.0]
-    events = np.empty((_EVENTS_PER_PERIOD, variational.EVENT_SIZE))
-    return _move(problem, parts, len(parts), state, events)[1]
-
-
-def _move(
-    problem: Problem,
-    parts: np.ndarray,
-    visits: int,
-    state: np.ndarray,
-    events: np.ndarray,
-    longest_angle: float = LONGEST_ANGLE,
-    samples: np.ndarray = _NO_SAMPLES,
-    samples_per_period: int = 0,
-) -> tuple[tuple[int, int, float, float], np.ndarray, np.ndarray]:
-    """Return what the compiled code returns, the state at the end and its derivatives."""
-    end = np.array(state, float)
-    jacobian = np.eye(SIZE, DEVIATIONS)
-    measured = _propagate(
-        parts,
-        np.array([problem.lubricant, problem.material]),
-        problem.backlash,
-        _bearings(problem),
-        visits,
-        longest_angle / highest_frequency(problem),
-        TOLERANCE,
-        end,
-        jacobian,
-        events,
-        samples,
-        samples_per_period,
-    )
-    return measured, end, jacobian
+    others[3] = len(parts)
+    points, _, _ = trace((parts, *others), np.append(state, 1.0), FIXED, problem.nu)  # type: ignore[arg-type]
+    return points[0, curves.END : curves.JACOBIAN]
 
 
 def _bearings(problem: Problem) -> np.ndarray:

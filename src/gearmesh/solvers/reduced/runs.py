@@ -229,7 +229,7 @@ def _final_state(problem: Problem, summary: Mapping[str, Any]) -> State:
 class _Samples:
     """A time course like `response.Samples`; what follows from it is computed on demand."""
 
-    extremes = None
+    force_bearing_3_z = force_bearing_2_z = extremes = None
 
     def __init__(self, problem: Problem, rows: np.ndarray, per_period: int) -> None:
         self._problem = problem

@@ -1,0 +1,300 @@
+"""Curves of periodic orbits over the mesh frequency, corrected and followed in compiled code.
+
+A place is a state and the mesh frequency in units of the curve. A point is a row of numbers: its
+place, the end of the motion over the period, the Jacobian, the tangent of the curve, and more.
+"""
+
+import numpy as np
+
+from gearmesh.solvers.compilation import inner
+from gearmesh.solvers.reduced.deviations import DEVIATIONS, SIZE
+from gearmesh.solvers.reduced.variational import COMPLETE, HEIGHT, KIND, TURN, propagate
+
+DIMENSIONS = SIZE + 1
+"""Size of a place."""
+
+END = DIMENSIONS
+JACOBIAN = END + SIZE
+TANGENT = JACOBIAN + SIZE * DEVIATIONS
+DETERMINANT, OUTCOME, N_EVENTS, DAMPING, LEAST_FORCE, Y_MAX, Y_MIN, POINT_SIZE = range(
+    TANGENT + DIMENSIONS, TANGENT + DIMENSIONS + 8
+)
+"""Columns of a point, behind its place: the end of the motion, the Jacobian, the tangent, its
+determinant (see `gearmesh.dynamics.continuation.Point`), what `propagate` returns, and the extremes
+of y."""
+
+LARGEST_RESIDUAL = 1e-11
+"""Largest |P^n(x) - x| of an orbit, in y_st and y_st Omega_s."""
+
+ROUNDED = 1e-14
+"""Residual that another correction does not improve."""
+
+FARTHEST = 100.0
+"""Size of y, in y_st, beyond which no orbits are searched for."""
+
+SHORTEST_STEP = 1e-7
+"""Shortest step along a curve."""
+
+LEAST_ALIGNMENT = 0.97
+"""Cosine of the largest angle between neighbouring tangents."""
+
+LARGEST_CORRECTION = 0.3
+"""Of a step, in steps."""
+
+GROWTH = 1.4
+"""Most by which a step is longer than the one before."""
+
+LARGE = 5.0
+"""Size of y, in y_st, beyond which the longest step grows in proportion to it."""
+
+_SHORTEST_CORRECTION = 1.0 / 1024.0
+_HISTORY = 3  # points from which the next is predicted
+
+
+@inner
+def _solve(matrix):
+    """Reduce a matrix with extra columns so that these hold the solutions; return its determinant.
+
+    The result is 0, and the columns hold no solution, if the matrix is singular.
+    """
+    determinant, n = 1.0, len(matrix)
+    for i in range(n):
+        best = i
+        for row in range(i + 1, n):
+            if abs(matrix[row, i]) > abs(matrix[best, i]):
+                best = row
+        pivot = matrix[best, i]
+        if not abs(pivot) > 0.0:
+            return 0.0
+        determinant *= pivot if best == i else -pivot
+        for column in range(i, matrix.shape[1]):
+            moved = matrix[best, column] / pivot
+            matrix[best, column] = matrix[i, column]
+            matrix[i, column] = moved
+        for row in range(n):
+            factor = matrix[row, i]
+            if row != i and factor != 0.0:
+                for column in range(i, matrix.shape[1]):
+                    matrix[row, column] -= factor * matrix[i, column]
+    return determinant
+
+
+@inner
+def _border(point, normal, ahead, matrix):
+    """Write the gradients of P^n(x) - x, bordered by `normal`, and two right-hand sides."""
+    for i in range(SIZE):
+        for j in range(SIZE):
+            matrix[i, j] = point[JACOBIAN + DEVIATIONS * i + j]
+        matrix[i, i] -= 1.0
+        matrix[i, SIZE] = -point[JACOBIAN + DEVIATIONS * i + SIZE] / point[SIZE]
+        matrix[i, DIMENSIONS] = point[END + i] - point[i]
+        matrix[i, DIMENSIONS + 1] = 0.0
+    for j in range(DIMENSIONS):
+        matrix[SIZE, j] = normal[j]
+    matrix[SIZE, DIMENSIONS] = ahead
+    matrix[SIZE, DIMENSIONS + 1] = 1.0
+
+
+@inner
+def _residual(point):
+    """Return |P^n(x) - x|; infinity if the motion is not complete."""
+    if point[OUTCOME] != COMPLETE:
+        return np.inf
+    largest = 0.0
+    for i in range(SIZE):
+        largest = max(largest, abs(point[END + i] - point[i]))
+    return largest if largest < np.inf else np.inf
+
+
+@inner(inline="always")
+def _evaluate(statement, unit, point, events, samples, per_period, segments):
+    """Move from the place of a point over the period, and write what it gives."""
+    begun, laws, backlash, bearings, visits, longest, tolerance, nu = statement
+    segments[:, :] = begun
+    segments[:, 0] *= nu / (point[SIZE] * unit)
+    state = point[END : END + SIZE]
+    state[:] = point[:SIZE]
+    jacobian = point[JACOBIAN:TANGENT].reshape((SIZE, DEVIATIONS))
+    jacobian[:, :] = 0.0
+    for i in range(SIZE):
+        jacobian[i, i] = 1.0
+    outcome, n_events, damping, least_force = propagate(
+        segments,
+        laws,
+        backlash,
+        bearings,
+        visits,
+        longest,
+        tolerance,
+        state,
+        jacobian,
+        events,
+        samples,
+        per_period,
+    )
+    point[OUTCOME], point[N_EVENTS] = outcome, n_events
+    point[DAMPING], point[LEAST_FORCE] = damping, least_force
+    point[Y_MAX] = point[Y_MIN] = point[0]
+    for event in events[:n_events]:
+        if event[KIND] == TURN:
+            point[Y_MAX] = max(point[Y_MAX], event[HEIGHT])
+            point[Y_MIN] = min(point[Y_MIN], event[HEIGHT])
+
+
+@inner(inline="always")
+def _land(statement, unit, points, events, row, origin, normal, corrections, room):
+    """Correct the place of a point in the plane through `origin`; return whether it is an orbit.
+
+    Damping helps far from an orbit. Near one a whole correction fails only because of rounding.
+    """
+    samples, per_period, segments, matrix = room
+    point, trial = points[row], points[-1]
+    trial[:DIMENSIONS] = point[:DIMENSIONS]
+    best, share, shortest = np.inf, 0.0, 0.0
+    while share >= shortest:
+        _evaluate(statement, unit, trial, events[-1], samples, per_period, segments)
+        residual = _residual(trial)
+        if residual < (1.0 - 0.1 * share) * best or best == np.inf:
+            best, share = residual, 1.0
+            point[:] = trial
+            count = int(trial[N_EVENTS])
+            events[row, :count] = events[-1, :count]
+            if corrections == 0 or best < ROUNDED or best == np.inf:
+                break
+            corrections -= 1
+            shortest = 1.0 if best < LARGEST_RESIDUAL else _SHORTEST_CORRECTION
+            ahead = 0.0
+            for j in range(DIMENSIONS):
+                ahead += normal[j] * (point[j] - origin[j])
+            _border(point, normal, ahead, matrix)
+            if _solve(matrix) == 0.0:
+                break
+        else:
+            share *= 0.5
+        for j in range(DIMENSIONS):
+            trial[j] = point[j] - share * matrix[j, DIMENSIONS]
+        if not trial[SIZE] > 0.0:
+            break
+    _border(point, normal, 0.0, matrix)
+    determinant = _solve(matrix)
+    size = 0.0
+    for j in range(DIMENSIONS):
+        size += matrix[j, DIMENSIONS + 1] ** 2
+    size = np.sqrt(size)
+    for j in range(DIMENSIONS):
+        point[TANGENT + j] = matrix[j, DIMENSIONS + 1] / size if determinant != 0.0 else 0.0
+    # The bordering row counts only by its part along the tangent, 1/size.
+    point[DETERMINANT] = determinant * size
+    return best < LARGEST_RESIDUAL
+
+
+@inner
+def _predict(points, last, length, nodes, table):
+    """Write the place at a distance behind the last point to the next row.
+
+    A polynomial through the last points with their tangents, over the arclength, gives it.
+    """
+    count, s = 2 * min(last + 1, _HISTORY), 0.0
+    for i in range(0, count, 2):
+        if i > 0:
+            chord, along = 0.0, 0.0
+            newer, older = points[last - i // 2 + 1], points[last - i // 2]
+            for j in range(DIMENSIONS):
+                chord += (newer[j] - older[j]) ** 2
+                along += newer[TANGENT + j] * older[TANGENT + j]
+            s -= np.sqrt(chord) * (1.0 + (1.0 - along) / 12.0)
+        nodes[i] = nodes[i + 1] = s
+    for j in range(DIMENSIONS):
+        for i in range(count):
+            table[i] = points[last - i // 2, j]
+        for order in range(1, count):
+            for i in range(count - 1, order - 1, -1):
+                if order == 1 and i % 2 == 1:
+                    table[i] = points[last - i // 2, TANGENT + j]
+                else:
+                    table[i] = (table[i] - table[i - 1]) / (nodes[i] - nodes[i - order])
+        value = table[count - 1]
+        for i in range(count - 2, -1, -1):
+            value = value * (length - nodes[i]) + table[i]
+        points[last + 1, j] = value
+
+
+@inner
+def is_clear(y, y_max, y_min, backlash):
+    """Return whether y is at least half as far from the ends of regimes as an orbit ever gets."""
+    middle = min(max(-0.5 * backlash, y_min), y_max)
+    best = 0.0
+    for height in (y_max, y_min, middle):
+        best = max(best, min(abs(height), abs(height + backlash)))
+    return min(abs(y), abs(y + backlash)) >= 0.5 * best
+
+
+@inner(inline="always")
+def trace(statement, unit, corrections, length, longest, limits, points, events, samples):
+    """Correct the first point, and follow the curve from there as far as there are rows.
+
+    Parameters
+    ----------
+    statement : tuple
+        Segments, laws, backlash, bearings, visits, longest step and tolerance of `propagate`, and
+        the mesh frequency nu of these segments.
+    unit : float
+        Change of nu that counts like a change of 1 in the state.
+    corrections : int
+        Most corrections of a point. The first point is only evaluated if there are more rows.
+    length, longest : float
+        Length of the first step, and of the longest one.
+    limits : tuple of float
+        Range of nu.
+    points : ndarray, shape (n + 1, POINT_SIZE)
+        The first row holds a place, and in place of the tangent the normal of the plane in which
+        the point is searched for. The last row is room.
+    events : ndarray, shape (n + 1, room, EVENT_SIZE)
+    samples : ndarray, shape (n, 4)
+        As for `propagate`, over all visits.
+
+    Returns
+    -------
+    count : int
+        Points found. The last one may lie outside the limits or farther than `FARTHEST`, or the
+        state of the next one is better taken at another phase.
+    length : float
+        Length of the next step; `SHORTEST_STEP` or less if no step succeeds.
+    """
+    segments, matrix = np.empty_like(statement[0]), np.empty((DIMENSIONS, DIMENSIONS + 2))
+    per_period = len(samples) * len(segments) // statement[4]
+    room = samples, per_period, segments, matrix
+    normal, origin = points[0, TANGENT : TANGENT + DIMENSIONS].copy(), np.empty(DIMENSIONS)
+    nodes, table = np.empty(2 * _HISTORY), np.empty(2 * _HISTORY)
+    origin[:] = points[0, :DIMENSIONS]
+    most = corrections if len(points) == 2 else 0
+    row = 0
+    while row < len(points) - 1:
+        point, before = points[row], points[row - 1]
+        if row > 0:
+            normal[:] = before[TANGENT : TANGENT + DIMENSIONS]
+            origin[:] = before[:DIMENSIONS] + length * normal
+            _predict(points, row - 1, length, nodes, table)
+        most = corrections if row > 0 or len(points) == 2 else 0
+        landed = _land(statement, unit, points, events, row, origin, normal, most, room)
+        if row == 0:
+            row = 1
+            continue
+        moved, aligned = 0.0, 0.0
+        for j in range(DIMENSIONS):
+            moved += (point[j] - origin[j]) ** 2
+            aligned += point[TANGENT + j] * normal[j]
+        straight = aligned > LEAST_ALIGNMENT and moved < (LARGEST_CORRECTION * length) ** 2
+        if not (landed and straight):
+            length *= 0.5
+            if not length > SHORTEST_STEP:
+                return row, length
+            continue
+        row += 1
+        size = max(point[Y_MAX], -point[Y_MIN])
+        if not limits[0] <= point[SIZE] * unit <= limits[1] or size > FARTHEST:
+            break
+        length = min(GROWTH * length, longest * max(1.0, size / LARGE))
+        if not is_clear(point[0], point[Y_MAX], point[Y_MIN], statement[2]):
+            break
+    return row, length
