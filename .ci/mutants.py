@@ -47,7 +47,7 @@ TARGETS = {
     ),
     "reruns": (
         ["pipeline/plan.py", "data/provenance.py", "pipeline/inputs.py"],
-        ["tests/pipeline", "tests/data/test_code_digest.py"],
+        ["tests/pipeline", "tests/data/test_code_digest.py", "tests/data/test_sources.py"],
     ),
 }
 """Files below src/gearmesh, and the tests that should notice a change in them."""

@@ -1,14 +1,21 @@
 """What the general solver costs beside the reduced one: ``python -m benchmarks.general``.
 
-The 27 single runs of `benchmarks.cases`, each in a call of its own, with estimates of the errors,
-as the pipeline calls the solvers. Times are CPU times, the least of several rounds. The machine
-code of the equations (`gearmesh.solvers.full.recurrences`) is made once in a process for every kind
-of law, not for every mesh frequency or value of a parameter; its time is listed apart.
+The 27 single runs of `benchmarks.cases`, each in a call of its own, once alone and once with the
+companion that estimates the errors, as the pipeline calls the solvers. The reduced solver carries
+the companion in another lane of the same vector, so it costs half as much again as the run. The
+general solver integrates one after the other, so it costs as much as the run. Times are CPU times,
+the least of several rounds. All solvers take turns in a round, so that a load on the machine slows
+all of them.
+
+The machine code of the equations (`gearmesh.solvers.full.recurrences`) is made once in a process
+for every kind of law, not for every mesh frequency or value of a parameter. Its time is listed
+apart.
 """
 
 import time
 from collections.abc import Callable
 from dataclasses import replace
+from functools import partial
 
 from benchmarks.cases import singles
 from gearmesh.model.problem import Problem, Wheel
@@ -23,18 +30,35 @@ ROUNDS = 7
 def main() -> None:
     """Print the times of all runs together, and their ratios."""
     runs = [problem for problems in singles().values() for problem in problems]
-    reduced = _least(lambda problem: simulate([problem], TOLERANCE), runs)
-    print(f"reduced solver: {1e3 * reduced / len(runs):.2f} ms a run")
-    for name, changed in (
-        ("the same runs, two coordinates", runs),
-        ("two different wheels, three coordinates", [_geared(problem) for problem in runs]),
-        ("run-out, six coordinates", [replace(problem, eccentricity_3=0.5) for problem in runs]),
-    ):
-        spent = _least(lambda problem: integrate(problem, TOLERANCE), changed)
-        each = 1e3 * spent / len(runs)
-        print(f"general solver, {name}: {each:.2f} ms a run, {spent / reduced:.1f} times as long")
-        made = _least(_prepare, changed[:1])
-        print(f"    machine code of the equations of one law: {1e3 * made:.0f} ms")
+    kinds = {
+        "the same runs, two coordinates": runs,
+        "two different wheels, three coordinates": [_geared(problem) for problem in runs],
+        "run-out, six coordinates": [replace(problem, eccentricity_3=0.5) for problem in runs],
+    }
+    for companion in (False, True):
+        solvers: dict[str, tuple[Callable[[Problem], object], list[Problem]]] = {
+            "reduced": (partial(_reduced, companion), runs)
+        }
+        for kind, changed in kinds.items():
+            solvers[kind] = partial(_general, companion), changed
+        spent = {name: 1e3 * least / len(runs) for name, least in _least(solvers).items()}
+        reduced = spent.pop("reduced")
+        print("with estimates of the errors" if companion else "the run alone")
+        print(f"    reduced solver: {reduced:.2f} ms a run")
+        for kind, each in spent.items():
+            ratio = each / reduced
+            print(f"    general solver, {kind}: {each:.2f} ms a run, {ratio:.1f} times as long")
+    made = _least({kind: (_prepare, changed[:1]) for kind, changed in kinds.items()})
+    for kind, seconds in made.items():
+        print(f"machine code of one law, {kind}: {1e3 * seconds:.0f} ms")
+
+
+def _reduced(companion: bool, problem: Problem) -> object:
+    return simulate([problem], TOLERANCE, estimate_errors=companion)
+
+
+def _general(companion: bool, problem: Problem) -> object:
+    return integrate(problem, TOLERANCE, estimate_errors=companion)
 
 
 def _geared(problem: Problem) -> Problem:
@@ -58,15 +82,18 @@ def _prepare(problem: Problem) -> None:
     recurrences.recurrences(problem, phases, sampled=False)
 
 
-def _least(solve: Callable[[Problem], object], problems: list[Problem]) -> float:
-    """Return the least CPU time in s that the problems take together."""
-    spent = []
+def _least(
+    solvers: dict[str, tuple[Callable[[Problem], object], list[Problem]]],
+) -> dict[str, float]:
+    """Return the least CPU time in s that the problems of each solver take together."""
+    spent: dict[str, list[float]] = {name: [] for name in solvers}
     for _ in range(ROUNDS + 1):  # the first round compiles
-        start = time.process_time()
-        for problem in problems:
-            solve(problem)
-        spent.append(time.process_time() - start)
-    return min(spent[1:])
+        for name, (solve, problems) in solvers.items():
+            start = time.process_time()
+            for problem in problems:
+                solve(problem)
+            spent[name].append(time.process_time() - start)
+    return {name: min(times[1:]) for name, times in spent.items()}
 
 
 if __name__ == "__main__":

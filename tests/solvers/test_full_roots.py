@@ -6,12 +6,12 @@ from hypothesis import assume, given
 from hypothesis import strategies as st
 from numpy.polynomial import Polynomial
 
-from gearmesh.solvers.full.roots import MAX_DEGREE, NEVER, TABLE_SHAPE, first_change
+from gearmesh.solvers.full.roots import MAX_DEGREE, NEVER, TABLE_ROWS, WIDTH, first_change
 
 
 def first(coefficients, sign):
     coefficients = np.array(coefficients, float)
-    return first_change(coefficients, len(coefficients) - 1, sign, np.zeros(TABLE_SHAPE))
+    return first_change(coefficients, len(coefficients) - 1, sign, np.zeros((TABLE_ROWS, WIDTH)))
 
 
 def from_roots(*roots):

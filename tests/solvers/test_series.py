@@ -15,7 +15,7 @@ from gearmesh.solvers.full import runs as general
 from gearmesh.solvers.full import series as full_series
 from gearmesh.solvers.full.coordinates import kinds_of_period
 from gearmesh.solvers.full.recurrences import recurrences
-from gearmesh.solvers.full.roots import MAX_DEGREE
+from gearmesh.solvers.full.roots import WIDTH
 from gearmesh.solvers.full.tape import Y
 from gearmesh.solvers.reduced import taylor
 from gearmesh.solvers.reduced import workspace as rows
@@ -132,7 +132,7 @@ def test_the_full_recurrence_is_the_statement(regime, part, slip_sign):
         state[6 + 4] = state[6 + 5]
     _, rate = relative_motion(RUN_OUT, time, state[:6], state[6:])
     modes["direction"] = np.sign(rate)
-    series = np.zeros((code.height, MAX_DEGREE + 1))
+    series = np.zeros((code.height, WIDTH))
     compiled_series(cases, modes, state, (code.numbers, code.branches), series)
     mode = Mode(regime, time / RUN_OUT.period, -1, slip_sign)
     expected = stated_series(RUN_OUT, time, state, mode)

@@ -105,11 +105,12 @@ class Curve:
     stretches: bool = False
 
     @cached_property
-    def _stated(self) -> Statement | None:
-        """The problem for the compiled code, if that follows the curve."""
+    def _compiled(self) -> tuple[Problem, Statement] | None:
+        """A problem, and how compiled code takes it, if the others differ from it in nu alone."""
         if self.condition is not None or not self.stretches or not isinstance(self.like, Orbit):
             return None
-        return statement(self._problem((self.like.problem.nu,)), self.periods)
+        problem = replace(self._problem((self.like.problem.nu,)), initial_state=None)
+        return problem, statement(problem, self.periods)
 
     def point(self, place: np.ndarray, normal: np.ndarray, along: np.ndarray) -> Point:
         """Return the point of the curve in the plane through `place` with the given normal.
@@ -125,8 +126,8 @@ class Curve:
         NoOrbit
             If Newton's method does not converge.
         """
-        if self._stated is not None:
-            point = self._traced(self._stated, place, normal, _MOST_CORRECTIONS)
+        if self._compiled is not None:
+            point = self._traced(self._compiled, place, normal, _MOST_CORRECTIONS)
             return point if point.tangent @ along > 0.0 else point.reversed()
         origin, best = place, np.inf
         orbit = self._orbit(place)
@@ -155,16 +156,20 @@ class Curve:
     def beside(self, point: Point, length: float) -> Point:
         """Return the point at a small distance along the tangent, where the curve still is."""
         place = point.place + length * point.tangent
-        if self._stated is not None:
-            return self._traced(self._stated, place, point.tangent, 0)
+        if self._compiled is not None:
+            return self._traced(self._compiled, place, point.tangent, 0)
         return self._with_tangent(place, self._orbit(place), point.tangent)
 
     def _traced(
-        self, stated: Statement, place: np.ndarray, normal: np.ndarray, corrections: int
+        self,
+        compiled: tuple[Problem, Statement],
+        place: np.ndarray,
+        normal: np.ndarray,
+        corrections: int,
     ) -> Point:
         """Return the point that compiled code finds."""
-        points, events, _ = trace(stated, place, normal, self.units[0], corrections)
-        point, moved = self._found(stated, points[0], events[0])
+        points, events, _ = trace(compiled[1], place, normal, self.units[0], corrections)
+        point, moved = self._found(compiled, points[0], events[0])
         if moved.status != "complete":
             raise NoOrbit(f"the motion ends with {moved.status}")
         residual = np.abs(moved.end - point.place[:4]).max()
@@ -173,17 +178,18 @@ class Curve:
         return point
 
     def _found(
-        self, stated: Statement, point: np.ndarray, events: np.ndarray
+        self, compiled: tuple[Problem, Statement], point: np.ndarray, events: np.ndarray
     ) -> tuple[Point, Passage]:
         """Return a point of the compiled code, and its motion."""
-        values = (float(point[4]) * self.units[0],)
+        nu = float(point[4]) * self.units[0]
+        problem, stated = compiled
         moved = passage_of(stated, self.units[0], point, events)
         found = Point(
             point[: curves.DIMENSIONS],
-            values,
+            (nu,),
             point[curves.TANGENT : curves.DETERMINANT],
             float(point[curves.DETERMINANT]),
-            lambda: self._bare(values, point[:4], moved),
+            lambda: Orbit(replace(problem, nu=nu), self.periods, point[:4], moved),
             moved,
         )
         return found, moved
@@ -231,14 +237,14 @@ class Curve:
         NoOrbit
             If the curve cannot be followed further.
         """
-        stated = self._stated
-        if stated is None:
+        compiled = self._compiled
+        if compiled is None:
             following, length = self._step_on(point, length)
             size = max(following.orbit.y_max, -following.orbit.y_min)
             grown = min(curves.GROWTH * length, longest * max(1.0, size / curves.LARGE))
             return [following], grown
         points, events, length = trace(
-            stated,
+            compiled[1],
             point.place,
             point.tangent,
             self.units[0],
@@ -250,7 +256,9 @@ class Curve:
         )
         if len(points) == 1:
             raise NoOrbit("it bends too sharply")
-        return [self._found(stated, points[i], events[i])[0] for i in range(1, len(points))], length
+        return [
+            self._found(compiled, points[i], events[i])[0] for i in range(1, len(points))
+        ], length
 
     def _step_on(self, point: Point, length: float) -> tuple[Point, float]:
         """Return the next point after `point` and the length of the step that reaches it."""
@@ -275,13 +283,6 @@ class Curve:
             if problem.initial_phase == self.phase
             else replace(problem, initial_phase=self.phase)
         )
-
-    def _bare(self, values: tuple[float, ...], state: np.ndarray, moved: Passage) -> Orbit:
-        """Return an orbit of the reduced system whose motion is known."""
-        problem = self._problem(values)
-        if problem.initial_state is not None:
-            problem = replace(problem, initial_state=None)
-        return Orbit(problem, self.periods, state, moved)
 
     def _orbit(self, place: np.ndarray) -> Shot:
         problem = self._problem(self._values(place))

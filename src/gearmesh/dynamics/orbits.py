@@ -197,7 +197,7 @@ class Orbit:
         turns = self._turns
         return np.column_stack([turns[:, TIME], turns[:, HEIGHT], -np.sign(turns[:, AFTER])])
 
-    @property
+    @cached_property
     def stiffness_jumps(self) -> np.ndarray:
         """The events at which C(t) jumps."""
         events = self.passage.events

@@ -37,7 +37,7 @@ Test = tuple[str, Callable[[Point], float]]
 Inner = tuple[Point, Point, float]
 """Points just inside the two ends of a piece of a branch, and their distance from the ends."""
 
-_MARGIN = 0.5
+_MARGIN = 0.25
 _OFFSET = 1e-5
 _NARROWEST = 1e-6  # piece of a branch; roots of one test closer than this are not separated
 _NARROWEST_PIECE = 1e-11  # between two grazings, in which multipliers are tested
@@ -135,7 +135,8 @@ def _event_functions(problem: Problem, moved: list[Passage]) -> tuple[list[np.nd
     """Return functions that pass 0 where events appear or vanish, each at all points.
 
     They are the least distances of an extremum of y from the ends of regimes, and the velocities
-    where C(t) jumps. The second result is the number of changes of regime.
+    where C(t) jumps, if y'' changes its sign there at the point or beside it. The second result is
+    the number of changes of regime.
     """
     stiffness = segments_of(problem)[:, 1]
     events = np.concatenate([one.events for one in moved])
@@ -147,6 +148,11 @@ def _event_functions(problem: Problem, moved: list[Passage]) -> tuple[list[np.nd
         for level in (0.0, -problem.backlash)
     ]
     velocities = events[jumps, VELOCITY].reshape(len(moved), -1)
+    turning = (events[jumps, BEFORE] * events[jumps, AFTER] < 0.0).reshape(velocities.shape)
+    beside = turning.copy()
+    beside[1:] |= turning[:-1]
+    beside[:-1] |= turning[1:]
+    velocities[~beside] = np.nan
     return [*margins, *velocities.T], np.add.reduceat(kind == CROSSING, first, dtype=int)
 
 

@@ -25,8 +25,7 @@ from gearmesh.solvers.full.measures import (
     take_value,
 )
 from gearmesh.solvers.full.roots import (
-    MAX_DEGREE,
-    TABLE_SHAPE,
+    TABLE_ROWS,
     evaluate,
     evaluate_with_slope,
     refine,
@@ -43,6 +42,7 @@ from gearmesh.solvers.full.signs import (
     settle_signs,
 )
 from gearmesh.solvers.full.tape import BRACKET, CONTACT, DEPTH, GAP, V, Y
+from gearmesh.solvers.lanes.rows import unowned
 from gearmesh.solvers.response import DIVERGED, FRICTION_UNDEFINED, STEP_LIMIT
 
 PASSED, SEGMENT_ENDED, TURNED, CROSSED = range(4)
@@ -311,7 +311,7 @@ def run(
     per_period,
     summaries,
     most_turns,
-    series,
+    workspace,
 ):
     """Integrate one run, or continue it.
 
@@ -338,8 +338,8 @@ def run(
         y_max and y_min start from -inf and inf.
     most_turns : int
         Steps after which the function returns, to be called again.
-    series : ndarray, shape (rows, MAX_DEGREE + 1)
-        Workspace of zeros.
+    workspace : ndarray, shape (rows, WIDTH)
+        Zeros: the series, and `TABLE_ROWS` + 1 rows for the search of roots.
 
     Returns
     -------
@@ -349,8 +349,12 @@ def run(
     case = cases[0]
     summary = summaries[0]
     mode = modes[0]
-    scaled = np.zeros(MAX_DEGREE + 1)
-    table = np.zeros(TABLE_SHAPE)
+    # To count the references to the arrays would take as long as the series of a step.
+    tape = unowned(tape[0]), unowned(tape[1])
+    segments, variants, state = unowned(segments), unowned(variants), unowned(state)
+    strobes, extrema, samples = unowned(strobes), unowned(extrema), unowned(samples)
+    series = unowned(workspace)
+    table, scaled = series[-TABLE_ROWS:], series[-TABLE_ROWS - 1]
     if mode.stage != UNDER_WAY:
         pairs, kind = segments[0].pairs, variants[mode.period]
         _start(case, mode, pairs, state, tape, kind, series, strobes, summary)

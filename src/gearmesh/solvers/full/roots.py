@@ -20,9 +20,13 @@ NEVER = 2.0
 # Number of halvings. Roots that are closer than the last half cannot be separated: a pair counts as
 # none.
 _DEPTH = 44
+_NARROWEST = 0.5**_DEPTH
 
-TABLE_SHAPE = (_DEPTH + 3, MAX_DEGREE + 1)
-"""Shape of the workspace of `first_change`."""
+WIDTH = MAX_DEGREE + 2
+"""Length of a row: coefficients, and in the last place the width of their interval."""
+
+TABLE_ROWS = _DEPTH + 3
+"""Rows of the workspace of `first_change`."""
 
 _MOST_ITERATIONS = 100
 
@@ -148,7 +152,7 @@ def first_change(coefficients, degree, sign, table):
         At most `MAX_DEGREE`.
     sign : float
         +1 or -1, the sign from the start; 0.0 is returned if the polynomial has the other one.
-    table : ndarray, shape `TABLE_SHAPE`
+    table : ndarray, shape (`TABLE_ROWS`, `WIDTH`)
         Workspace.
     """
     start = 0
@@ -175,25 +179,24 @@ def _search(coefficients, degree, sign, table):
     """Go through the intervals from left to right; row `depth` of the table is the next one."""
     depth = 0
     low = 0.0
-    width = 1.0
-    levels = np.zeros(table.shape[0], np.int64)
+    table[0, WIDTH - 1] = 1.0
     while depth >= 0:
-        width = 0.5 ** levels[depth]
+        width = table[depth, WIDTH - 1]
         changes, first, last = _variations(table[depth], degree)
         if first == -sign:
             return low
-        if changes == 0 or (levels[depth] == _DEPTH and last == sign):
+        if changes == 0 or (width == _NARROWEST and last == sign):
             low += width
             depth -= 1
         elif changes == 1:
             return refine(coefficients, degree, low, low + width, sign)
-        elif levels[depth] == _DEPTH:
+        elif width == _NARROWEST:
             return low + width
         else:
             _halve(table[depth], table[depth + 2], table[depth + 1], degree)
-            table[depth] = table[depth + 1]
-            table[depth + 1] = table[depth + 2]
-            levels[depth] += 1
-            levels[depth + 1] = levels[depth]
+            for j in range(degree + 1):
+                table[depth, j] = table[depth + 1, j]
+                table[depth + 1, j] = table[depth + 2, j]
+            table[depth, WIDTH - 1] = table[depth + 1, WIDTH - 1] = 0.5 * width
             depth += 1
     return NEVER

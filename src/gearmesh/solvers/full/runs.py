@@ -23,7 +23,7 @@ from gearmesh.solvers.full import kernel
 from gearmesh.solvers.full.coordinates import embedding, kinds_of_period, projected, signs_act
 from gearmesh.solvers.full.measures import SAMPLE, SUMMARY
 from gearmesh.solvers.full.recurrences import recurrences
-from gearmesh.solvers.full.roots import MAX_DEGREE
+from gearmesh.solvers.full.roots import MAX_DEGREE, TABLE_ROWS, WIDTH
 from gearmesh.solvers.full.series import CASE, CONTINUED, MODE, SEGMENT
 from gearmesh.solvers.response import (
     EXTREMUM,
@@ -173,7 +173,7 @@ class _Run:
             variants,
             (found.numbers, found.branches),
         )
-        self._series = np.zeros((found.height, MAX_DEGREE + 1))
+        self._series = np.zeros((found.height + TABLE_ROWS + 1, WIDTH))
         self.extrema = np.zeros(0, EXTREMUM)
         self.start = np.concatenate(start(problem))
         self.start[ROTATION_3] += displacement

@@ -23,6 +23,18 @@ def pointer_to(typingctx, array):
     return POINTER(array), codegen
 
 
+@intrinsic
+def unowned(typingctx, array):
+    """Return the same array for code that counts no references to it; the caller keeps it alive."""
+
+    def codegen(context, builder, sig, args):
+        view = context.make_array(sig.args[0])(context, builder, args[0])
+        view.meminfo = context.get_constant_null(types.MemInfoPointer(types.voidptr))
+        return view._getvalue()
+
+    return array(array), codegen
+
+
 def _row_pointer(builder, data, row, width):
     offset = builder.mul(row, ir.Constant(row.type, width))
     return builder.bitcast(builder.gep(data, [offset]), vector_type(DOUBLE, width).as_pointer())

@@ -1,0 +1,273 @@
+"""Instructions for the Taylor coefficients of one order, operation by operation.
+
+The terms of a product that were known an order earlier are added first, so that the sum waits for
+the newest ones only. Every operation is an IEEE operation, with explicit fused multiply-adds, so
+all processors give the same bits.
+"""
+
+from collections.abc import Sequence
+from typing import Any
+
+from llvmlite import ir
+
+from gearmesh.solvers.full.roots import WIDTH
+from gearmesh.solvers.full.tape import (
+    ACCELERATE,
+    ENTRY,
+    MOVES,
+    POWER,
+    PRODUCT,
+    RATES,
+    ROOT,
+    ROUND,
+    SIGNED,
+    SINE,
+    SUMS,
+    TIME,
+    WAVE,
+)
+from gearmesh.solvers.lanes.types import DOUBLE, INT64, call_llvm
+
+Shape = tuple[int, int, tuple[int, ...], int]
+"""An operation without its numbers: what it does, the row that it writes, the rows that it takes,
+and how many numbers it has."""
+
+
+class _Order:
+    """Instructions for the coefficients of one order `k`."""
+
+    def __init__(self, builder: ir.IRBuilder, arguments: Sequence[ir.Value], k: ir.Value) -> None:
+        self.builder = builder
+        self.series, self.numbers, self.direction = arguments[:3]
+        self.k = k
+
+    def _shifted(self, by: int) -> ir.Value:
+        return self.builder.add(self.k, ir.Constant(INT64, by))
+
+    def _place(self, row: int, k: ir.Value) -> ir.Value:
+        at = self.builder.add(ir.Constant(INT64, row * WIDTH), k)
+        return self.builder.gep(self.series, [at])
+
+    def _load(self, row: int, k: ir.Value | int) -> ir.Value:
+        k = ir.Constant(INT64, k) if isinstance(k, int) else k
+        return self.builder.load(self._place(row, k))
+
+    def _store(self, row: int, k: ir.Value, value: ir.Value) -> None:
+        self.builder.store(value, self._place(row, k))
+
+    def _number(self, i: int) -> ir.Value:
+        return self.builder.load(self.builder.gep(self.numbers, [ir.Constant(INT64, i)]))
+
+    def _real(self, k: ir.Value) -> ir.Value:
+        return self.builder.sitofp(k, DOUBLE)
+
+    def _fma(self, a: ir.Value, b: ir.Value, c: ir.Value) -> ir.Value:
+        return call_llvm(self.builder, "fma", a, b, c)
+
+    def _share(self, value: ir.Value, by: int) -> ir.Value:
+        """Return `value` / (k + by)."""
+        inverse = self.builder.fdiv(_real(1.0), self._real(self._shifted(by)))
+        return self.builder.fmul(value, inverse)
+
+    def _sum(self, total: ir.Value, rows: tuple[int, ...], first_number: int) -> ir.Value:
+        for i, row in enumerate(rows):
+            total = self._fma(self._number(first_number + i), self._load(row, self.k), total)
+        return total
+
+    def _write_sum(self, code: int, out: int, total: ir.Value) -> None:
+        if code == ACCELERATE:
+            rate = self._share(total, 1)
+            self._store(RATES + out, self._shifted(1), rate)
+            self._store(out, self._shifted(2), self._share(rate, 2))
+        else:
+            self._store(out, self.k, total)
+
+
+def _real(value: float) -> ir.Value:
+    return ir.Constant(DOUBLE, value)
+
+
+class First(_Order):
+    """Instructions for the coefficients of order 0."""
+
+    def __init__(self, builder: ir.IRBuilder, arguments: Sequence[ir.Value]) -> None:
+        super().__init__(builder, arguments, ir.Constant(INT64, 0))
+
+    def emit(self, operations: Sequence[Shape]) -> None:
+        """Write the instructions of all operations, in their order."""
+        at = 0
+        for code, out, rows, many in operations:
+            if code in SUMS:
+                self._write_sum(code, out, self._sum(self._number(at), rows, at + 1))
+            elif code in (WAVE, SINE):
+                if code == WAVE:
+                    angle = self._fma(self._number(at + 1), self._load(TIME, 0), self._number(at))
+                else:
+                    angle = self._load(rows[0], 0)
+                self._store(out, self.k, call_llvm(self.builder, "sin", angle))
+                self._store(out + 1, self.k, call_llvm(self.builder, "cos", angle))
+            elif code in (ROOT, ROUND):
+                function = "sqrt" if code == ROOT else "rint"
+                self._store(out, self.k, call_llvm(self.builder, function, self._load(rows[0], 0)))
+            elif code == POWER:
+                value = call_llvm(self.builder, "pow", self._load(rows[0], 0), self._number(at))
+                self._store(out, self.k, value)
+            elif code == ENTRY:
+                self._store(out, self.k, self._entry(rows[0], at, many))
+            else:
+                value = self.builder.fmul(self._load(rows[0], 0), self._load(rows[1], 0))
+                if code == SIGNED:
+                    value = self.builder.fmul(value, self.direction)
+                self._store(out, self.k, value)
+            at += many
+
+    def _entry(self, row: int, first: int, size: int) -> ir.Value:
+        """Return the number at the whole number in a row, of `size` numbers that repeat."""
+        place = self.builder.fptosi(call_llvm(self.builder, "rint", self._load(row, 0)), INT64)
+        length = ir.Constant(INT64, size)
+        # The remainder has the sign of the place.
+        place = self.builder.srem(place, length)
+        place = self.builder.srem(self.builder.add(place, length), length)
+        place = self.builder.add(place, ir.Constant(INT64, first))
+        return self.builder.load(self.builder.gep(self.numbers, [place]))
+
+
+class Further(_Order):
+    """Instructions for the coefficients of an order from 1 on."""
+
+    def emit(self, operations: Sequence[Shape]) -> None:
+        """Write the instructions of all operations, in their order."""
+        pairs = [pair for operation in operations for pair in _convolved(operation)]
+        self.middles = self._convolutions(pairs)
+        at = 0
+        for code, out, rows, many in operations:
+            if code in SUMS:
+                total = self._sum(_real(0.0), rows, at + 1)
+                self._write_sum(code, out, total)
+                if code == MOVES:
+                    rate = self.builder.fmul(self._real(self.k), total)
+                    self._store(out + 1, self._shifted(-1), rate)
+            elif code == WAVE:
+                speed = self.builder.fmul(self._number(at + 1), self._load(TIME, 1))
+                self._turn(out, self._share(speed, 0))
+            elif code == SINE:
+                self._sine(out, rows[0])
+            elif code in (ROUND, ENTRY):
+                self._store(out, self.k, _real(0.0))
+            elif code == ROOT:
+                self._root(out, rows[0])
+            elif code == POWER:
+                self._power(out, rows[0], self._number(at))
+            else:
+                self._product(code, out, *rows)
+            at += many
+
+    def _convolutions(self, pairs: list[tuple[int, int, bool]]) -> dict[Any, ir.Value]:
+        """Return the sums of a_j b_(k-j), or j a_j b_(k-j), over 0 < j < k."""
+        if not pairs:
+            return {}
+        builder = self.builder
+        before = builder.block
+        loop = builder.append_basic_block()
+        after = builder.append_basic_block()
+        last = self._shifted(-2)
+        two, zero = ir.Constant(INT64, 2), _real(0.0)
+        builder.cbranch(builder.icmp_signed("<=", two, last), loop, after)
+        builder.position_at_end(loop)
+        j = builder.phi(INT64)
+        j.add_incoming(two, before)
+        sums = []
+        for a, b, weighted in pairs:
+            total = builder.phi(DOUBLE)
+            total.add_incoming(zero, before)
+            sums.append((total, a, b, weighted))
+        rest = builder.sub(self.k, j)
+        totals = []
+        for total, a, b, weighted in sums:
+            factor = self._load(a, j)
+            if weighted:
+                factor = builder.fmul(self._real(j), factor)
+            totals.append(self._fma(factor, self._load(b, rest), total))
+        following = builder.add(j, ir.Constant(INT64, 1))
+        j.add_incoming(following, loop)
+        for (total, *_), new in zip(sums, totals, strict=True):
+            total.add_incoming(new, loop)
+        builder.cbranch(builder.icmp_signed("<=", following, last), loop, after)
+        builder.position_at_end(after)
+        middles = []
+        for new in totals:
+            total = builder.phi(DOUBLE)
+            total.add_incoming(zero, before)
+            total.add_incoming(new, loop)
+            middles.append(total)
+        found: dict[Any, ir.Value] = {}
+        masks = [
+            builder.uitofp(builder.icmp_signed(">", self.k, ir.Constant(INT64, order)), DOUBLE)
+            for order in (1, 2)
+        ]
+        before_last = self._shifted(-1)
+        for pair, total in zip(pairs, middles, strict=True):
+            a, b, weighted = pair
+            first = builder.fmul(masks[0], self._load(a, 1))
+            total = self._fma(first, self._load(b, before_last), total)
+            second = builder.fmul(masks[1], self._load(b, 1))
+            if weighted:
+                second = builder.fmul(second, self._real(before_last))
+            found[pair] = self._fma(second, self._load(a, before_last), total)
+        return found
+
+    def _product(self, code: int, out: int, a: int, b: int) -> None:
+        total = self.middles[a, b, False]
+        if a == b:
+            doubled = self.builder.fmul(_real(2.0), self._load(a, 0))
+            total = self._fma(doubled, self._load(a, self.k), total)
+        else:
+            total = self._fma(self._load(b, 0), self._load(a, self.k), total)
+            total = self._fma(self._load(a, 0), self._load(b, self.k), total)
+        if code == SIGNED:
+            total = self.builder.fmul(total, self.direction)
+        self._store(out, self.k, total)
+
+    def _turn(self, out: int, angle: ir.Value) -> None:
+        """Continue sine and cosine of an angle that is linear in time."""
+        before = self._shifted(-1)
+        self._store(out, self.k, self.builder.fmul(angle, self._load(out + 1, before)))
+        back = self.builder.fmul(self.builder.fneg(angle), self._load(out, before))
+        self._store(out + 1, self.k, back)
+
+    def _sine(self, out: int, angle: int) -> None:
+        newest = self.builder.fmul(self._real(self.k), self._load(angle, self.k))
+        s = self._fma(newest, self._load(out + 1, 0), self.middles[angle, out + 1, True])
+        c = self._fma(newest, self._load(out, 0), self.middles[angle, out, True])
+        self._store(out, self.k, self._share(s, 0))
+        self._store(out + 1, self.k, self.builder.fneg(self._share(c, 0)))
+
+    def _root(self, out: int, square: int) -> None:
+        rest = self.builder.fsub(self._load(square, self.k), self.middles[out, out, False])
+        doubled = self.builder.fmul(_real(2.0), self._load(out, 0))
+        self._store(out, self.k, self.builder.fdiv(rest, doubled))
+
+    def _power(self, out: int, base: int, exponent: ir.Value) -> None:
+        # k b_0 p_k is the sum of (e (k - j) - j) b_(k-j) p_j over j < k, with the exponent e.
+        whole = self._fma(
+            self._load(base, self.k), self._load(out, 0), self.middles[out, base, False]
+        )
+        scale = self.builder.fmul(exponent, self._real(self.k))
+        less = self.builder.fadd(exponent, _real(1.0))
+        less = self.builder.fmul(less, self.middles[out, base, True])
+        total = self.builder.fsub(self.builder.fmul(scale, whole), less)
+        self._store(out, self.k, self.builder.fdiv(self._share(total, 0), self._load(base, 0)))
+
+
+def _convolved(operation: Shape) -> list[tuple[int, int, bool]]:
+    """Return the pairs of series that an operation convolves, and if one is differentiated."""
+    code, out, rows, _ = operation
+    if code in (PRODUCT, SIGNED):
+        return [(rows[0], rows[1], False)]
+    if code == ROOT:
+        return [(out, out, False)]
+    if code == POWER:
+        return [(out, rows[0], False), (out, rows[0], True)]
+    if code == SINE:
+        return [(rows[0], out + 1, True), (rows[0], out, True)]
+    return []
