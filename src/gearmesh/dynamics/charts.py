@@ -9,9 +9,9 @@ stays as it is. Three cases differ.
 - `HELD`: run-out depends on its angle, and friction and damping change its rate, because the
   static moments balance each other and nothing else acts on it. So the stated equations have no
   orbit: the wheels leave the stated speed. A drive that holds the speed exerts constant moments on
-  both wheels which balance friction and damping. They accelerate the mean rotation alone and do not load
-  the mesh, so an orbit tends to that without run-out as the run-out vanishes. They are unknowns
-  of an orbit, and the angle at the initial phase is given in their place.
+  both wheels which balance friction and damping. They accelerate the mean rotation alone and do not
+  load the mesh, so an orbit tends to that without run-out as the run-out vanishes. They are
+  unknowns of an orbit, and the angle at the initial phase is given in their place.
 """
 
 from dataclasses import dataclass, replace
