@@ -20,8 +20,8 @@ if TYPE_CHECKING:
         follow,
         follow_special,
     )
-    from gearmesh.interface.inspection import read_pitch_chart
     from gearmesh.interface.geometry import Geometry, geometry
+    from gearmesh.interface.inspection import read_pitch_chart
     from gearmesh.interface.lyapunov import lyapunov_spectrum
     from gearmesh.interface.orbits import Orbit, find_orbit
     from gearmesh.interface.runs import simulate, sweep
