@@ -20,8 +20,8 @@ if TYPE_CHECKING:
         follow,
         follow_special,
     )
-    from gearmesh.interface.charts import read_pitch_chart
     from gearmesh.interface.geometry import Geometry, geometry
+    from gearmesh.interface.inspection import read_pitch_chart
     from gearmesh.interface.lyapunov import lyapunov_spectrum
     from gearmesh.interface.orbits import Orbit, find_orbit
     from gearmesh.interface.runs import simulate, sweep
@@ -64,7 +64,7 @@ _MODULES = {
         *("Branch", "SpecialCurve", "SpecialPoint"),
         *("follow", "follow_special"),
     ),
-    "gearmesh.interface.charts": ("read_pitch_chart",),
+    "gearmesh.interface.inspection": ("read_pitch_chart",),
     "gearmesh.interface.geometry": ("Geometry", "geometry"),
     "gearmesh.interface.lyapunov": ("lyapunov_spectrum",),
     "gearmesh.interface.orbits": ("Orbit", "find_orbit"),

@@ -10,6 +10,7 @@ from problems import problem
 import gearmesh as gm
 from gearmesh.dynamics import branches, general_search, orbits
 from gearmesh.dynamics.general_orbits import shot_from
+from gearmesh.dynamics.special_curves import follow_special
 from gearmesh.errors import NoOrbit
 
 LIMITS = (0.3845, 0.3862)
@@ -63,6 +64,11 @@ def test_a_sweep_jumps_at_the_fold_of_the_branch():
     *_, before, after = up.y_max_rel.values.ravel()
     assert 0.828 < fold.nu < 0.83
     assert after - before > 1.0
+    # No motion here reaches the back flanks, so the fold does not depend on the backlash.
+    ranges = (0.8, 0.86), (15.0, 25.0)
+    curve = follow_special(branch.found.special[1], ("nu", "backlash"), ranges, longest_step=0.5)
+    np.testing.assert_allclose(curve.values[:, 0], fold.nu, atol=1e-9)
+    assert np.ptp(curve.values[:, 1]) == pytest.approx(10.0)
     last = gm.find_orbit(pair, "b-both", 0.828, start=below)
     assert float(last.to_dataset().y_max_rel) == pytest.approx(before, abs=1e-3)
 

@@ -6,12 +6,12 @@ stays as it is. Three cases differ.
 - `ABSENT`: without run-out and without damping to the frame, no force on the mesh depends on it.
 - `FREE`: torsional damping acts on its rate, but nothing depends on its angle. It drifts at a rate
   that repeats in every period. An orbit closes in everything but this angle.
-- `HELD`: run-out depends on its angle, and friction and damping slow it down, because the static
-  moments balance each other and no moment makes up for what is lost. So the stated equations have
-  no orbit: the wheels leave the stated speed. A drive that holds the speed exerts constant moments
-  on both wheels which make up for the loss. They accelerate the mean rotation alone and do not load
-  the mesh, so an orbit tends to that without run-out as the run-out vanishes. They are unknowns
-  of an orbit, and the angle at the initial phase is given in their place.
+- `HELD`: run-out depends on its angle, and friction and damping change its rate, because the
+  static moments balance each other and nothing else acts on it. So the stated equations have no
+  orbit: the wheels leave the stated speed. A drive that holds the speed exerts constant moments on
+  both wheels which balance friction and damping. They accelerate the mean rotation alone and do not
+  load the mesh, so an orbit tends to that without run-out as the run-out vanishes. They are
+  unknowns of an orbit, and the angle at the initial phase is given in their place.
 """
 
 from dataclasses import dataclass, replace

@@ -95,7 +95,7 @@ class Orbit:
         """Constant moments that hold the speed of an eccentric pair, besides those stated.
 
         On wheels 3 and 2, as shares of M_3 and M_2; 0 if nothing depends on the mean rotation. They
-        make up for what the mesh takes out of it, and a run under them repeats.
+        balance what friction and damping do to it, and a run under them repeats.
         """
         found = self.found
         return found.holding_moments if isinstance(found, GeneralOrbit) else (0.0, 0.0)
