@@ -35,6 +35,7 @@ TARGETS = {
         ["reproduction/claims/*.py"],
         [
             *("tests/reproduction/test_measures.py", "tests/reproduction/test_ledger.py"),
+            *("tests/reproduction/test_printed_numbers.py", "tests/reproduction/test_judgement.py"),
             *("tests/reproduction/test_claims.py", "tests/reproduction/test_time_course_claims.py"),
         ],
     ),

@@ -24,12 +24,7 @@ from gearmesh.solvers.full.measures import (
     sample,
     take_value,
 )
-from gearmesh.solvers.full.roots import (
-    TABLE_ROWS,
-    evaluate,
-    evaluate_with_slope,
-    refine,
-)
+from gearmesh.solvers.full.roots import TABLE_ROWS, evaluate, evaluate_with_slope, refine
 from gearmesh.solvers.full.series import NEW, UNDER_WAY, begin, expand, expand_outputs, level
 from gearmesh.solvers.full.signs import (
     BRACKET_TURNED,
@@ -82,14 +77,12 @@ def _settle_pairs(case, mode, pairs, series, summary):
 def _settle_regime(case, mode, summary):
     """Enter normal mesh if a pair of teeth presses, and leave it if none does."""
     presses = mode.pressing[0] + mode.pressing[1] + mode.pressing[2] > 0.0
-    if presses and mode.regime != NORMAL_MESH:
-        mode.regime = NORMAL_MESH
-        mode.parted = False
-    elif mode.regime == NORMAL_MESH and not presses:
-        mode.regime = CONTACT_LOSS
-        if mode.period >= case.first_kept and not mode.parted:
-            summary.contact_losses += 1
-        mode.parted = False
+    if presses == (mode.regime == NORMAL_MESH):
+        return
+    if not presses and mode.period >= case.first_kept and not mode.parted:
+        summary.contact_losses += 1
+    mode.regime = NORMAL_MESH if presses else CONTACT_LOSS
+    mode.parted = False
 
 
 @inner
