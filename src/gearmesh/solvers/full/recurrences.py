@@ -2,13 +2,14 @@
 
 Every branch of the laws becomes a few functions that fill the table of series, order by order. Two
 branches whose operations differ in their numbers only share the code: the numbers are data. LLVM
-translates it in some milliseconds, once in a process (`coefficients`).
+translates it (`coefficients`) in some milliseconds, when a run first needs it in a process.
 """
 
+import ctypes
 from collections.abc import Iterable, Sequence
 from functools import cache, lru_cache
 from itertools import count
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from llvmlite import binding, ir
@@ -77,11 +78,12 @@ def recurrences(problem: Problem, segments: Iterable[float], sampled: bool) -> R
 @lru_cache(maxsize=256)
 def _recurrences(laws: Problem, segments: tuple[float, ...], sampled: bool) -> Recurrences:
     numbers: list[float] = []
-    branches = []
+    branches, wanted = [], []
     height = FIRST_FREE
     for parts in record(laws, segments, sampled):
         if not parts:
             branches.append([0] * (2 * N_PARTS))
+            wanted.append(())
             continue
         places = []
         for part in parts:
@@ -91,10 +93,13 @@ def _recurrences(laws: Problem, segments: tuple[float, ...], sampled: bool) -> R
         places[FORCES] = places[MOTION]  # the accelerations continue y
         moves, *others = (tuple(_shape(operation) for operation in part) for part in parts)
         forces, presses, sample = others
-        addresses = [_compiled(moves), _compiled(forces, moves), _compiled(presses)]
-        addresses.append(_compiled(sample) if sampled else 0)
-        branches.append(addresses + places)
-    return Recurrences(np.array(numbers), np.array(branches, np.int64), height)
+        wanted.append(((moves, ()), (forces, moves), (presses, ()), (sample, ())))
+        branches.append([0] * N_PARTS + places)
+    found = Recurrences(np.array(numbers), np.array(branches, np.int64), height)
+    for branch, functions in zip(found.branches, wanted, strict=True):
+        for part, function in enumerate(functions):
+            branch[part] = _compiled.get(function) or _compiles_itself(branch, part, function)
+    return found
 
 
 def _shape(operation: Operation) -> Shape:
@@ -124,7 +129,7 @@ def _numbers(operation: Operation) -> tuple[float, ...]:
 
 
 def _emit(function: ir.Function, first: Sequence[Shape], second: Sequence[Shape]) -> None:
-    """Write the instructions of a function of `_compiled`."""
+    """Write the instructions of a function; see `_compile`."""
     arguments = function.args
     start, stop = arguments[3:]
     builder = ir.IRBuilder(function.append_basic_block())
@@ -177,22 +182,59 @@ def _engine() -> binding.ExecutionEngine:
 _names = (f"gearmesh_recurrence_{i}" for i in count())
 
 
-@cache
-def _compiled(first: tuple[Shape, ...], second: tuple[Shape, ...] = ()) -> int:
-    """Return the address of a function that carries out operations.
+_Function = tuple[tuple[Shape, ...], tuple[Shape, ...]]
+"""What a function carries out: operations, and others that are two orders ahead of them."""
 
-    It takes the table of series, its numbers, the sign of y', and the orders from which and before
-    which it works. The operations of `second`, whose numbers precede the others, are two orders
-    ahead: the accelerations give the coefficients of the coordinates there.
+_compiled: dict[_Function, int] = {}
+"""Addresses of the functions that have been compiled, for the life of the process."""
+
+_CALL = ctypes.CFUNCTYPE(
+    None, ctypes.c_void_p, ctypes.c_void_p, ctypes.c_double, ctypes.c_int64, ctypes.c_int64
+)
+_waiting: list[Any] = []  # ctypes does not keep its functions alive
+_failures: list[BaseException] = []
+
+
+def _compiles_itself(branch: np.ndarray, part: int, function: _Function) -> int:
+    """Return the address of a function that takes its own place by compiled code when called.
+
+    A problem has many branches, and a run reaches few of them. Compiled code cannot raise what
+    happens meanwhile: `raise_failures` does.
+    """
+
+    def call(*arguments: Any) -> None:
+        try:
+            branch[part] = _compiled.get(function) or _compile(function)
+            _CALL(int(branch[part]))(*arguments)
+        except BaseException as error:
+            _failures.append(error)
+
+    _waiting.append(_CALL(call))
+    return ctypes.cast(_waiting[-1], ctypes.c_void_p).value or 0
+
+
+def raise_failures() -> None:
+    """Raise what happened while a run had a function compiled, such as an interruption."""
+    if _failures:
+        raise _failures.pop()
+
+
+def _compile(function: _Function) -> int:
+    """Compile a function and return its address.
+
+    The function takes the table of series, its numbers, the sign of y', and the orders from which
+    and before which it works. The operations ahead, whose numbers precede the others, are those of
+    y: the accelerations give the coefficients of the coordinates two orders on.
     """
     module = ir.Module()
     module.triple = binding.get_default_triple()
     name = next(_names)
-    _emit(ir.Function(module, _SIGNATURE, name), first, second)
+    _emit(ir.Function(module, _SIGNATURE, name), *function)
     engine = _engine()
     engine.add_module(binding.parse_assembly(str(module)))
     engine.finalize_object()
-    return engine.get_function_address(name)
+    _compiled[function] = engine.get_function_address(name)
+    return _compiled[function]
 
 
 @intrinsic

@@ -22,7 +22,7 @@ from gearmesh.solvers.compilation import persistent
 from gearmesh.solvers.full import kernel
 from gearmesh.solvers.full.coordinates import embedding, kinds_of_period, projected, signs_act
 from gearmesh.solvers.full.measures import SAMPLE, SUMMARY
-from gearmesh.solvers.full.recurrences import recurrences
+from gearmesh.solvers.full.recurrences import raise_failures, recurrences
 from gearmesh.solvers.full.roots import MAX_DEGREE, TABLE_ROWS, WIDTH
 from gearmesh.solvers.full.series import CASE, CONTINUED, MODE, SEGMENT
 from gearmesh.solvers.response import (
@@ -194,19 +194,21 @@ class _Run:
         self.strobes = np.zeros((self.problem.periods + 1, 2))
         self.extrema = np.zeros(room, EXTREMUM)
         self.samples = np.zeros(samples_per_period * self.problem.kept_periods, SAMPLE)
-        while not _compiled_run(
-            *self._arguments,
-            self.state,
-            self.mode,
-            self.strobes,
-            self.extrema,
-            self.samples,
-            samples_per_period,
-            summaries,
-            _MOST_TURNS,
-            self._series,
-        ):
-            pass
+        over = False
+        while not over:
+            over = _compiled_run(
+                *self._arguments,
+                self.state,
+                self.mode,
+                self.strobes,
+                self.extrema,
+                self.samples,
+                samples_per_period,
+                summaries,
+                _MOST_TURNS,
+                self._series,
+            )
+            raise_failures()
 
     def final_state(self) -> State:
         """Return the state at the end of the run."""
