@@ -193,4 +193,4 @@ def test_each_command_finds_python_and_the_study(plan):
     prefix = pipeline.prefix(plan)
     assert prefix.startswith("set -euo pipefail; ")
     assert " STUDY=config/tiny.yaml " in prefix
-    assert prefix.endswith("; unset NUMBA_DISABLE_JIT; ")
+    assert prefix.endswith("; unset NUMBA_DISABLE_JIT PYTHONDONTWRITEBYTECODE; ")
