@@ -66,7 +66,7 @@ docs: $(DOCS_STAMP) ## the documentation site, in docs/_build/html
 	$(BIN)/sphinx-build --fail-on-warning --keep-going --quiet -b html docs docs/_build/html
 	$(BIN)/python .ci/lint_docs.py docs/_build/html
 
-mutants: $(STAMP) ## small changes of the code that the tests should notice (ten minutes or more)
+mutants: $(STAMP) ## small changes of the code that the tests should notice (four minutes)
 	$(BIN)/python .ci/mutants.py
 
 identify: $(STAMP) ## infer the open parameters from the claims
