@@ -81,7 +81,7 @@ class Plane {
 const ROWS = [
   { name: "y", label: "y", lines: [["y", "own", 1.3]], regions: true },
   { name: "v", label: "y′", lines: [["v", "own", 1.3]] },
-  { name: "c", label: "C, C(H₁+H₂)", lines: [["stiffness", "grey", 1.3], ["modified", "ink", 1.6]] },
+  { name: "c", label: "C, C(H₁+H₂)", lines: [["stiffness", "grey", 2.6], ["modified", "ink", 1.6]] },
   { name: "f", label: "F, F dyn", lines: [["dynamic", "grey", 1.1], ["tooth", "own", 1.3]] },
 ];
 
