@@ -86,6 +86,7 @@ def test_both_solvers_agree_on_the_loads(pair, name, nu):
         one, other = (getattr(response.samples, force) for response in (fast, general))
         assert one == pytest.approx(other, abs=1e-7)
     one, other = (loads(problem, response.samples) for response in (fast, general))
+    # The reduced solver estimates the force at a jump from the sample before it: 4e-6 here.
     assert one.force_max == pytest.approx(other.force_max, abs=1e-5)
 
 
