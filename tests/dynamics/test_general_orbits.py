@@ -102,3 +102,11 @@ def test_the_public_function_serves_them():
     assert float(found.y_rel[0]) == float(found.strobe_y_rel)
     nearby = gm.find_orbit(pair, "c-material", 0.91, start=orbit)
     assert nearby.residual < 1e-11
+
+
+def test_the_back_flanks_are_where_the_backlash_is_at_the_time():
+    """The least y lies above -s, and below -s(t)."""
+    terms = GeneralTerms(backlash_harmonics=(Harmonic(1.0, 0.5, 0.0),))
+    found = general_search.find_orbit(problem(0.9, "b-both", terms=terms, backlash=1.4))
+    assert found.y_min > -1.4
+    assert found.signature == (1, 0, -1, 0)

@@ -213,9 +213,13 @@ class GeneralOrbit:
     def signature(self) -> tuple[int, ...]:
         """Regimes in their order over the orbit's own period, as of `Orbit.signature`.
 
-        Between two extrema y is monotone, so the extrema tell all regimes.
+        Between two extrema y is monotone, so the extrema tell all regimes. Where the backlash varies,
+        the regimes are those of the samples.
         """
-        ends = regime_of(self.response.extremum_y, self.problem.backlash).astype(int).tolist()
+        if self.problem.terms.backlash_varies:
+            ends = self.time_course().regime.astype(int).tolist()
+        else:
+            ends = regime_of(self.response.extremum_y, self.problem.backlash).astype(int).tolist()
         if not ends:
             return (int(regime_of(self.y, self.problem.backlash)),)
         passed = [

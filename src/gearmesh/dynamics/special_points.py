@@ -303,7 +303,8 @@ def _event_tests(left: Point, right: Point) -> list[Test]:
     for time, _, kind in left.orbit.extrema:
         phase = time / left.orbit.problem.period
         tests.append(("grazing_front", _height_above(0.0, phase, kind)))
-        tests.append(("grazing_back", _height_above(-1.0, phase, kind)))
+        if not left.orbit.problem.terms.backlash_varies:  # else an extremum need not touch -s(t)
+            tests.append(("grazing_back", _height_above(-1.0, phase, kind)))
     turning = {
         number
         for point in (left, right)
