@@ -5,9 +5,9 @@
 A mutant changes one comparison, operator, constant, condition or returned value. The tests of a
 target are collected once, and run once to see which lines each of them runs. Then a process is
 forked for each mutant. It puts the changed code into the functions that have it, and runs the tests
-of the changed lines, the fastest first, until one fails. A change of what an import runs needs a
-process that has not imported the package yet. Compiled code is not mutated: two other solvers check
-it.
+of the changed lines, the fastest first, until one fails. If an import runs the changed code, the
+process must not have imported the package before. Compiled code is not mutated: two other solvers
+check it.
 
 Outcomes are kept in `.mutants/`. As long as neither sources nor tests change, a run that was
 stopped goes on where it ended. docs/testing.md says why each survivor is harmless.

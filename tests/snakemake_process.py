@@ -1,6 +1,6 @@
-"""Runs of Snakemake as processes of their own, which start without importing it anew.
+"""Runs of Snakemake, each in its own process, without a new import of Snakemake.
 
-To import Snakemake takes longer than to plan a study. A server has imported it, with the packages
+Importing Snakemake takes longer than planning a study. A server has imported it, with the packages
 that the Snakefile needs, and nothing of gearmesh. Each run is a fork of that server with its own
 folder, environment and process group. It imports gearmesh from the copied project.
 """

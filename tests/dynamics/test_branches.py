@@ -28,7 +28,7 @@ def lubricant():
 
 
 def test_a_branch_in_contact_has_the_flips_of_its_tongue_and_one_switching_point():
-    """Undamped, y rests at 1/C_min while C is least, if a half turn at C_max fills the pulse."""
+    """Without damping, y rests at 1/C_min if the pulse of C_max lasts half an oscillation."""
     begun = problem(0.64, **FAR_BODIES)
     branch = follow(find_orbit(begun), "nu", (0.62, 0.7))
     assert [point.kind for point in branch.special] == ["switching", "flip", "flip"]

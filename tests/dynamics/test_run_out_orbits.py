@@ -32,7 +32,7 @@ def assert_ends_on(found, orbit, tolerance):
 
 
 def test_a_run_from_rest_ends_on_the_orbit_of_its_own_rotation():
-    """Without friction hardly anything turns the wheels away from their speed."""
+    """Without friction, almost nothing changes the speed of the wheels."""
     case = problem(0.9, "c-material", **SMOOTH, **BOTH)
     found = run(case, 60)
     orbit = general_search.find_orbit(replace(case, initial_state=found.final_state), 21)
@@ -80,7 +80,7 @@ def test_the_orbit_tends_to_that_without_run_out():
 
 @pytest.mark.parametrize("run_out", [{}, {"eccentricity_3": 1.0, "eccentricity_2": -0.5}])
 def test_linear_damping_gives_the_determinant(run_out):
-    """Liouville: mesh, four bearings and the damping to the frame shrink volumes."""
+    """By Liouville's formula the mesh, four bearings and the damping to the frame shrink volumes."""
     damped = GeneralTerms(torsional_damping=(0.04, 0.01))
     case = problem(0.7, "b-both", teeth=3, terms=damped, **SMOOTH, **run_out)
     orbit = general_search.find_orbit(case, 3 if run_out else 1)
@@ -112,7 +112,7 @@ def test_frequencies_without_a_common_period_have_no_orbit():
 
 
 def test_the_public_function_states_the_holding_moments():
-    """Heavy bodies slide in the other direction in every second revolution."""
+    """Heavy bodies reverse their sliding direction from one revolution to the next."""
     pair = gm.paper().replace(eccentricity="10 um")
     with pytest.raises(NoOrbit, match="after 21 mesh periods"):
         gm.find_orbit(pair, "c-material", 0.9)

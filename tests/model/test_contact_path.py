@@ -34,7 +34,7 @@ def test_a_pair_touches_within_half_its_path_around_its_middle(contact_ratio):
 def test_where_one_pair_follows_the_other_at_once_the_next_one_touches():
     for phase in (-1.0, 0.0, 2.0):
         assert stiffness.touching_pairs(phase, 1.0) == [(phase, -0.5)]
-    # Between them the ends of the paths of two pairs touch for no time.
+    # Between these limits, two pairs touch at the ends of their paths, for no time at all.
     assert stiffness.touching_pairs(0.25, 1.5) == [(0, -0.25)]
     assert stiffness.touching_pairs(-0.25, 1.5) == [(-1, 0.25)]
     assert stiffness.touching_pairs(0.5, 2.0) == [(0, 0.0)]
@@ -48,7 +48,7 @@ def test_places_at_equal_distances_along_a_path():
 def test_a_line_through_knots():
     assert stiffness.line_through(TABLE, 0.125) == pytest.approx((1.0, -1.6))
     assert stiffness.line_through(TABLE, 0.0) == pytest.approx((1.2, -1.6))
-    # The first of two values at a jump belongs to what ends there.
+    # At a jump the first of the two values belongs to the segment that ends.
     assert stiffness.line_through(TABLE, 0.25) == pytest.approx((0.8, -1.6))
     assert stiffness.line_through(TABLE, 0.85) == pytest.approx((1.05, 1.0))
     assert stiffness.line_through(TABLE, 1.0) == pytest.approx((1.2, 1.0))
@@ -181,7 +181,7 @@ def test_the_pitch_point_of_unequal_wheels_moves_the_change_of_gamma():
 
 
 def test_a_path_of_contact_ends_at_the_base_circles():
-    """12 driven teeth of 5 degrees: the tips reach beyond where the mesh line touches them."""
+    """At 5 degrees the tips of the larger wheel reach past the end of the mesh line."""
     angle, ratio = math.radians(5.0), 1.4
     tip, base, pitch = 21.0, 20.0 * math.cos(angle), 20.0
     beyond = math.sqrt(tip**2 - base**2) - pitch * math.sin(angle)
@@ -194,14 +194,14 @@ def test_a_path_of_contact_ends_at_the_base_circles():
 
 
 def test_arms_of_unequal_wheels():
-    """rho_i / R_bi where a base pitch is 2 pi / Z_i of a radius."""
+    """The arms are rho_i / R_bi, and a base pitch is 2 pi / Z_i of R_bi."""
     rho_3, rho_2 = arms(0.25, math.pi / 4, 20, 40)
     assert rho_3 == pytest.approx(1.0 + math.pi / 40)
     assert rho_2 == pytest.approx(1.0 - math.pi / 80)
 
 
 def test_the_holding_force_gives_both_bodies_the_same_acceleration():
-    """(-pull_3 + F) / m_3 = (-pull_2 - F) / m_2."""
+    """The force F solves (-pull_3 + F) / m_3 = (-pull_2 - F) / m_2."""
     force = holding_force(3.0, -1.0, 2.0, 5.0)
     assert (-3.0 + force) / 2.0 == pytest.approx((1.0 - force) / 5.0)
     assert force == pytest.approx(17.0 / 7.0)

@@ -1,4 +1,4 @@
-"""Flanks that deviate, the power of Hertz, and tables that repeat: by hand."""
+"""Flanks that deviate, Hertz' power and periodic tables, checked against values by hand."""
 
 from dataclasses import replace
 
@@ -125,6 +125,6 @@ def test_the_extremes_of_pairs_that_are_added_up(contact_ratio):
         place = phases - p - 0.5
         total += np.interp(place, places, values, left=0.0, right=0.0)
     least, greatest = stiffness.extremes_of_pairs(values, contact_ratio)
-    # The sum jumps where a path ends, and has its extremes at a jump or at a kink.
+    # The sum jumps where a path ends. Its extremes lie at jumps or kinks.
     assert least == pytest.approx(total.min(), abs=2e-4)
     assert greatest == pytest.approx(total.max(), abs=2e-4)

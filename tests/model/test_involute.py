@@ -1,4 +1,4 @@
-"""Involute geometry and the stiffness of teeth: drawn by hand, and by the formulas of ISO 6336."""
+"""Involute geometry and tooth stiffness, checked by construction and against ISO 6336."""
 
 import math
 
@@ -67,7 +67,7 @@ def test_a_centre_distance_and_tip_diameters_that_are_given_are_kept():
 
 
 def written_out(z_1, z_2, x_1, x_2):
-    """q' of ISO 6336-1 (2006), clause 9, term by term."""
+    """Compute q' of ISO 6336-1 (2006), clause 9, term by term."""
     total = 0.04723 + 0.15551 / z_1 + 0.25791 / z_2 - 0.00635 * x_1
     total += -0.11654 * x_1 / z_1 - 0.00193 * x_2 - 0.24188 * x_2 / z_2
     return total + 0.00529 * x_1 * x_1 + 0.00182 * x_2 * x_2

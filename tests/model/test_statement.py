@@ -137,7 +137,7 @@ def test_the_run_out_integral_grows_by_the_bracket(name):
     ahead, behind = (motion.run_out_integral(one, time + h, q + h * v) for h in (step, -step))
     bracket = afresh.bracket(one, time, [*q, *v])
     assert (ahead - behind) / (2.0 * step) == pytest.approx(bracket, rel=1e-7)
-    # At rest in the angle 0 both cosines are 1 and cos(Delta).
+    # At rest at the angle 0 the cosines are 1 and cos(Delta).
     still = motion.run_out_integral(one, 0.0, np.zeros(6))
     expected = one.eccentricity_3 + one.eccentricity_2 * math.cos(one.eccentricity_angle)
     assert still == pytest.approx(-expected, rel=1e-14)
@@ -219,7 +219,7 @@ def test_the_forces_of_parted_flanks_are_none_but_the_contact_force_is_known():
 
 
 def test_flanks_that_stick_are_held_by_the_bearings_alone():
-    """F_T is what keeps z_3'' = z_2'', and each pair of teeth takes an equal share."""
+    """F_T keeps z_3'' = z_2'', and each pair of teeth takes an equal share of it."""
     for one in (ROUGH, PROBLEMS["two wheels"]):
         q, v = np.random.default_rng(4).normal(size=(2, 6))
         v[motion.Z_3] = v[motion.Z_2]

@@ -2,6 +2,7 @@
 
 import os
 import shutil
+import subprocess
 from dataclasses import replace
 
 import pytest
@@ -193,4 +194,9 @@ def test_each_command_finds_python_and_the_study(plan):
     prefix = pipeline.prefix(plan)
     assert prefix.startswith("set -euo pipefail; ")
     assert " STUDY=config/tiny.yaml " in prefix
-    assert prefix.endswith("; unset NUMBA_DISABLE_JIT PYTHONDONTWRITEBYTECODE; ")
+    settings = ("NUMBA_DISABLE_JIT", "PYTHONDONTWRITEBYTECODE", "PYTHONOPTIMIZE", "PYTHONWARNINGS")
+    caller = os.environ | dict.fromkeys(settings, "1")
+    seen = subprocess.run(
+        ["bash", "-c", prefix + "env"], env=caller, capture_output=True, text=True, check=True
+    )
+    assert not any(f"{name}=" in seen.stdout for name in settings)

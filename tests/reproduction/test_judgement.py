@@ -4,6 +4,8 @@ import json
 import math
 
 import pytest
+from entries import shape_claim as claim
+from entries import shape_entry as entry
 
 from gearmesh.errors import InputError
 from gearmesh.reproduction.claims import (
@@ -11,8 +13,6 @@ from gearmesh.reproduction.claims import (
     NOT_TESTABLE,
     REPRODUCED,
     Bound,
-    Claim,
-    Entry,
     Evidence,
     checking,
     collect,
@@ -22,18 +22,6 @@ from gearmesh.reproduction.claims import (
     verdict,
     write_entries,
 )
-
-
-def claim(**changes):
-    fields = {
-        "id": "F2.1",
-        "where": "Fig. 2",
-        "figure": "fig2",
-        "statement": "It is so.",
-        "kind": "shape",
-        "expected": {"at_most": 1.0},
-    }
-    return Claim(**{**fields, **changes})
 
 
 def test_bounds_hold_on_either_side():
@@ -75,10 +63,6 @@ def test_the_targets_of_a_claim_and_their_tolerances():
             claim(**wrong)
     with pytest.raises(ValueError, match="of 'b'"):
         claim(expected={"a": 1.0, "b": 2.0}, tolerance={"a": 0.1})
-
-
-def entry(name="F2.1", status=REPRODUCED, **changes):
-    return Entry(**claim(id=name).model_dump(), status=status, **changes)
 
 
 def test_an_entry_is_unexpected_if_it_is_judged_and_has_another_status():

@@ -5,6 +5,8 @@ import math
 
 import pytest
 import yaml
+from entries import shape_claim as claim
+from entries import shape_entry as entry
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -14,7 +16,6 @@ from gearmesh.reproduction.claims import (
     NOT_TESTABLE,
     REPRODUCED,
     Claim,
-    Entry,
     Evidence,
     NotInStudy,
     checking,
@@ -26,18 +27,6 @@ from gearmesh.reproduction.claims import (
     write_entries,
 )
 from gearmesh.reproduction.claims.checking import check_figure
-
-
-def claim(**changes):
-    fields = {
-        "id": "F2.1",
-        "where": "Fig. 2",
-        "figure": "fig2",
-        "statement": "It is so.",
-        "kind": "shape",
-        "expected": {"at_most": 1.0},
-    }
-    return Claim(**{**fields, **changes})
 
 
 GOOD = {
@@ -230,10 +219,6 @@ def test_a_claim_on_a_threshold_that_is_not_located_is_not_testable_and_unexpect
     assert verdict([entry]).unexpected == (entry,)
     names = ["d-lubricant"]
     assert measuring(depends).status == DEVIATES
-
-
-def entry(name, status=REPRODUCED, **changes):
-    return Entry(**claim(id=name).model_dump(), status=status, **changes)
 
 
 def test_entries_are_written_and_read_back(tmp_path):

@@ -269,7 +269,7 @@ def test_jumps_of_acceleration_and_the_shift_of_phase(pair):
     assert found["elsewhere"]["c-material-5x"] == pytest.approx(expected) and detail
     found, detail = fig7.phase_shift(evidence)
     assert found["shift"] == pytest.approx(30.0)
-    assert detail.endswith("c-material 0.0°, c-material-5x 30.0°") or "360.0°" in detail
+    assert detail.endswith("c-material 0.0°, c-material-5x 30.0°")
     # The other way round, and beyond half a turn.
     found, _ = fig7.phase_shift(Evidence(pair=pair, time_courses=of_both(other, one)))
     assert found["shift"] == pytest.approx(30.0)

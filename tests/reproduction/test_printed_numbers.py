@@ -70,7 +70,7 @@ def test_the_coefficients_are_compared_with_those_of_the_wave(pair, monkeypatch)
 @pytest.mark.parametrize("nu", [0.6, 0.66, 1.1])
 @pytest.mark.parametrize("ratio", [0.0, 0.01])
 def test_the_trace_is_that_of_the_exponential_map(pair, nu, ratio):
-    """The factor of the decay, exp(-zeta T), is left out of it."""
+    """The result leaves out the decay exp(-zeta T)."""
     period = 2 * math.pi / nu
     total = np.eye(2)
     for share, level in ((0.569, pair.mesh_stiffness_max), (0.431, pair.stiffness_min)):
@@ -85,13 +85,13 @@ def test_a_root_is_where_the_sign_changes():
     assert printed._root(lambda x: 0.3 - x, 0.0, 1.0) == pytest.approx(0.3, abs=1e-7)
     for constant in (1.0, -1.0):
         assert math.isnan(printed._root(lambda x, c=constant: c, 0.0, 1.0))
-    # It must lie between the ends.
+    # A root at an end does not count.
     assert math.isnan(printed._root(lambda x: x, 0.0, 1.0))
     assert math.isnan(printed._root(lambda x: x - 1.0, 0.0, 1.0))
 
 
 def test_the_parametric_tongue_is_where_the_multipliers_leave_the_unit_circle(pair):
-    """By the eigenvalues of the map over a period, with damping as well."""
+    """Orbits grow just below the damping ratio that is found, and decay just above it."""
     values, detail = printed.parametric_tongue(Evidence(pair=pair))
     assert (values["from"], values["to"]) == pytest.approx((0.65562, 0.66734), abs=1e-5)
     assert values["damping ratio"] == pytest.approx(0.0089, abs=5e-5)

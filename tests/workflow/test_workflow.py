@@ -85,8 +85,7 @@ def test_sha256sum_checks_all_results(smoke):
 
 def test_a_run_prints_its_cases_and_its_end(smoke):
     for letter in LETTERS:
-        assert f"gearmesh: {letter}: " in smoke.output
-    assert "c: 96 computed, 0 kept" in smoke.output or "computed, 0 kept" in smoke.output
+        assert re.search(rf"gearmesh: {letter}: [1-9]\d* computed, 0 kept", smoke.output)
     counts = smoke.output[smoke.output.index("claims: ") :].splitlines()[0]
     assert sum(int(word) for word in counts.split() if word.isdigit()) == 35
     for name in ("printed", *FIGURES):

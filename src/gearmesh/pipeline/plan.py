@@ -365,12 +365,13 @@ def prefix(plan: Plan) -> str:
 
     It takes the place of Snakemake's own prefix, so it repeats that a command fails with any part
     of it: the logs are written through a pipe. Jobs run side by side, so the matrix library takes
-    one thread for each. With more, a small matrix takes a hundred times as long. Bytecode is kept
-    even where the caller keeps none, as in many containers: each job would compile all modules.
+    one thread for each. With more, a small matrix takes a hundred times as long. Settings
+    of the caller's Python do not reach the jobs. Without bytecode, as in many containers, each job
+    would compile all modules; with warnings as errors it would fail for a library's sake.
     """
     folder = shlex.quote(str(Path(sys.executable).parent))
     study = shlex.quote(str(plan.study.path))
     return (
         f"set -euo pipefail; export PATH={folder}:$PATH STUDY={study} OPENBLAS_NUM_THREADS=1; "
-        "unset NUMBA_DISABLE_JIT PYTHONDONTWRITEBYTECODE; "
+        "unset NUMBA_DISABLE_JIT PYTHONDONTWRITEBYTECODE PYTHONOPTIMIZE PYTHONWARNINGS; "
     )
