@@ -80,7 +80,7 @@ def test_the_orbit_tends_to_that_without_run_out():
 
 @pytest.mark.parametrize("run_out", [{}, {"eccentricity_3": 1.0, "eccentricity_2": -0.5}])
 def test_linear_damping_gives_the_determinant(run_out):
-    """By Liouville's formula the mesh, four bearings and the damping to the frame shrink volumes."""
+    """Mesh, bearings and damping to the frame shrink volumes, by Liouville's formula."""
     damped = GeneralTerms(torsional_damping=(0.04, 0.01))
     case = problem(0.7, "b-both", teeth=3, terms=damped, **SMOOTH, **run_out)
     orbit = general_search.find_orbit(case, 3 if run_out else 1)

@@ -28,7 +28,6 @@ from gearmesh.reproduction.claims import (
 )
 from gearmesh.reproduction.claims.checking import check_figure
 
-
 GOOD = {
     "where": "Fig. 2",
     "figure": "fig2",

@@ -12,6 +12,7 @@ from gearmesh.model import stiffness
 from gearmesh.model.functions import Harmonic
 from gearmesh.model.mesh import mesh_stiffness
 from gearmesh.model.problem import GeneralTerms, State, ToothFactor, Wheel
+from gearmesh.solvers.full import recurrences
 from gearmesh.solvers.full.coordinates import embedding
 from gearmesh.solvers.full.runs import integrate
 
@@ -281,3 +282,17 @@ def test_tip_relief_of_the_static_deflection_takes_the_shock_out_of_the_mesh():
         for one in (spring, relieved)
     )
     assert spared < 0.5 * plain
+
+
+def test_an_interruption_while_code_is_made_ends_the_run_and_harms_no_other(monkeypatch):
+    def interrupted(function):
+        raise KeyboardInterrupt
+
+    unusual = replace(BASE, contact_ratio=1.31, stiffness_harmonics=3)
+    monkeypatch.setattr(recurrences, "_compiled", {})
+    recurrences._recurrences.cache_clear()
+    with monkeypatch.context() as patch:
+        patch.setattr(recurrences, "_compile", interrupted)
+        with pytest.raises(KeyboardInterrupt):
+            integrate(unusual)
+    assert integrate(unusual).status == "ok"

@@ -84,7 +84,7 @@ def geometry(options: argparse.Namespace) -> int:
 
 
 _LISTED = 6
-"""A table shows the ends of lists that are longer."""
+"""A longer list of numbers is shown as its length, least and greatest value."""
 
 
 def _of_wheels(texts: Sequence[str]) -> object:

@@ -122,7 +122,7 @@ LOAD_FIELDS = (
     Field("force_bearing_3_z_max", "", "N", "greatest force on the bearing of wheel 3 along z"),
     Field("force_bearing_2_z_max", "", "N", "greatest force on the bearing of wheel 2 along z"),
 )  # fmt: skip
-"""What engineers report of a run; in a record where it is asked for."""
+"""Loads that engineers report. A record contains them if they are asked for."""
 
 LOAD_SAMPLE_FIELDS = (
     Field("force_normal", "sample", "N", "tooth force: elastic and damping force"),
@@ -133,7 +133,7 @@ LOAD_SAMPLE_FIELDS = (
     Field("transmission_error", "sample", "mm",
           "dynamic transmission error R_b3 phi_3 + R_b2 phi_2"),
 )  # fmt: skip
-"""The same over time."""
+"""The loads over time."""
 
 ALL_FIELDS = (*FIELDS, *LOAD_FIELDS, *SAMPLE_FIELDS, *LOAD_SAMPLE_FIELDS)
 """All variables, in the order of a file."""

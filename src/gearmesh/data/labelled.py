@@ -116,7 +116,7 @@ def grid_dataset(
 
 
 def _stacked(field: Field, rows: Sequence[np.ndarray]) -> np.ndarray:
-    """Stack rows of unequal length, filled with what stands for no value."""
+    """Stack rows of unequal length. Short rows are filled with the value that marks no value."""
     if not field.dimension:
         return np.array(rows)
     longest = max(row.size for row in rows)

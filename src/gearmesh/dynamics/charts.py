@@ -1,7 +1,7 @@
-"""The numbers in which orbits of the general solver are sought, and what their mean rotation does.
+"""Unknowns of the orbits of the general solver, and the treatment of the mean rotation.
 
-The mean rotation is (phi_3 - phi_2) / 2 beside the stated speeds: both wheels turn, and the mesh
-stays as it is. Three cases differ.
+The mean rotation (phi_3 - phi_2) / 2 is measured relative to the stated speeds. It turns both
+wheels together and leaves the mesh unchanged. There are three cases.
 
 - `ABSENT`: without run-out and without damping to the frame, no force on the mesh depends on it.
 - `FREE`: torsional damping acts on its rate, but nothing depends on its angle. It drifts at a rate
@@ -78,7 +78,7 @@ class Chart:
         return (end - start)[1:] if self.rotation == FREE else end - start
 
     def monodromy(self, jacobian: np.ndarray) -> np.ndarray:
-        """Return what is left of the Jacobian of places if the mean rotation is left out."""
+        """Return the Jacobian of places without the rows and columns of the mean rotation."""
         left_out = {ABSENT: [], FREE: [0], HELD: [0, self.n]}[self.rotation]
         return np.delete(np.delete(jacobian, left_out, 0), left_out, 1)
 
@@ -106,7 +106,7 @@ def chart_of(problem: Problem) -> Chart:
 
 
 def with_moments(problem: Problem, moments: tuple[float, float]) -> Problem:
-    """Return the problem with constant moments besides on wheels 3 and 2."""
+    """Return the problem with additional constant moments on wheels 3 and 2."""
     if not any(moments):
         return problem
     terms = problem.terms

@@ -213,8 +213,8 @@ class GeneralOrbit:
     def signature(self) -> tuple[int, ...]:
         """Regimes in their order over the orbit's own period, as of `Orbit.signature`.
 
-        Between two extrema y is monotone, so the extrema tell all regimes. Where the backlash varies,
-        the regimes are those of the samples.
+        Between two extrema y is monotone, so the extrema tell all regimes. Where the backlash
+        varies, the regimes are those of the samples.
         """
         if self.problem.terms.backlash_varies:
             ends = self.time_course().regime.astype(int).tolist()
@@ -296,8 +296,8 @@ def _slope(
 ) -> np.ndarray:
     """Return the derivative of a function along a direction, by differences of sixth order.
 
-    Those of fourth order differ if the function has a kink nearby. Steps of at most `largest` then
-    become smaller.
+    Differences of fourth order serve as a check: they deviate if the function has a kink nearby.
+    The step is then reduced, starting from `largest`.
     """
     best = np.inf
     for step in largest * np.array(_SHARES):
@@ -321,7 +321,7 @@ def shot_from(problem: Problem, state: np.ndarray, periods: int, angle: float) -
 
 
 def ends(problem: Problem, periods: int, share: float = 1.0) -> Callable[..., np.ndarray]:
-    """Return the function that gives where motions end after mesh periods, of their places."""
+    """Return a function that maps the place where a motion starts to the place where it ends."""
     chart, motions = chart_of(problem), Propagation(problem, periods, _TOLERANCE, share)
     return lambda place: chart.place_of_six(motions.end(chart.six(place)))
 

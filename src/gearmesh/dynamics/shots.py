@@ -1,4 +1,4 @@
-"""What a curve of orbits asks of a motion, whichever solver integrates it."""
+"""The interface that curves of orbits need from a motion, whichever solver integrates it."""
 
 from typing import Protocol, Self
 
@@ -104,5 +104,5 @@ class Shot(Protocol):
     def at_phase(self, phase: float) -> Self:
         """Return the orbit with its state taken at another mesh phase.
 
-        It need not be possible where mesh periods differ.
+        This may fail if the mesh periods differ from each other.
         """

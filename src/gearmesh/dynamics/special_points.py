@@ -81,11 +81,12 @@ def search(
 
 
 def suspects(points: list[Point]) -> list[int]:
-    """Return the numbers of the points behind which, up to the next, a special point may be.
+    """Return every i for which a special point may lie between point i and the next one.
 
-    A test function changes its sign there, or comes so close to 0 that it might pass it twice: it
-    is less than `_MARGIN` of what it changes nearby. All test functions of all points are computed
-    at once, so that only these pieces of a branch need a closer look.
+    A piece of the branch is suspect if a test function changes sign in it. It is also suspect if a
+    test function may cross 0 twice in it, that is, if its value at an end is less than `_MARGIN`
+    times its change nearby. All test functions are computed for all points at once, so only the
+    suspect pieces need a closer look.
     """
     every = list(range(len(points) - 1))
     moved = [point.passage for point in points if point.passage and len(point.passage.events)]
@@ -134,9 +135,10 @@ def _pair_products(jacobians: np.ndarray) -> np.ndarray:
 def _event_functions(problem: Problem, moved: list[Passage]) -> tuple[list[np.ndarray], np.ndarray]:
     """Return functions that pass 0 where events appear or vanish, each at all points.
 
-    They are the least distances of an extremum of y from the ends of regimes, and the velocities
-    where C(t) jumps, if y'' changes its sign there at the point or beside it. The second result is
-    the number of changes of regime.
+    The first functions are the least distances between extrema of y and the ends of regimes. The
+    others are the velocities where C(t) jumps. Such a velocity counts only if y'' changes sign at
+    the jump, at this point or a neighbouring one. The second result is the number of changes of
+    regime.
     """
     stiffness = segments_of(problem)[:, 1]
     events = np.concatenate([one.events for one in moved])

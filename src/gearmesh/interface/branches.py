@@ -132,9 +132,9 @@ def follow(orbit: Orbit, parameter: str, limits: Limits) -> Branch:
     Returns
     -------
     Branch
-        Orbits along the branch, and its special points, located to 1e-8 in the parameter. With
-        terms that only the general solver knows, `switching` points are not located, and a `torus`
-        closer than 1e-6 to a grazing only to 1e-7.
+        Orbits along the branch, and its special points, located to 1e-8 in the parameter. If the
+        pair has terms that only the general solver knows, `switching` points are not located, and
+        a `torus` point closer than 1e-6 to a grazing is located only to 1e-7.
 
     Raises
     ------

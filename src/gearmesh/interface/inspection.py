@@ -1,4 +1,4 @@
-"""Measured deviations of gear teeth, from the chart of an inspection."""
+"""Read measured deviations of gear teeth from an inspection chart."""
 
 import csv
 import itertools
@@ -15,18 +15,18 @@ def read_pitch_chart(path: str | Path, unit: str = "um") -> list[str]:
     Parameters
     ----------
     path : str or Path
-        CSV file with one line for each tooth, in their order. The first line names the columns.
-        One of them is read: ``F_p``, the index deviation of each tooth, or ``f_p``, the single
-        pitch deviation before it (ISO 1328-1), which is added up from tooth to tooth. Both are
-        positive where a flank stands out towards its mate.
+        CSV file with one line for each tooth, in the order of the teeth. The first line names the
+        columns. One of two columns is read (ISO 1328-1). ``F_p`` is the index deviation of each
+        tooth. ``f_p`` is the deviation of the single pitch before the tooth; these deviations are
+        added up from tooth to tooth. Both are positive if a flank stands out towards its mate.
     unit : str
         Unit of the column.
 
     Returns
     -------
     list of str
-        Deviation of each tooth from its ideal place, with its unit; the first line of the chart is
-        tooth 0.
+        Deviation of each tooth from its ideal place, with its unit. The first line after the names
+        of the columns is tooth 0.
 
     Raises
     ------
@@ -51,7 +51,7 @@ def read_pitch_chart(path: str | Path, unit: str = "um") -> list[str]:
         except (TypeError, ValueError):
             raise InputError(f"{path}: line {line}: found {text!r}; allowed is a number") from None
     if named == ["f_p"]:
-        # The pitches close around the wheel, so their deviations have no mean.
+        # The pitches add up to a full turn, so the mean of their deviations must be 0.
         mean = sum(values) / len(values)
         values = list(itertools.accumulate(value - mean for value in values))
     return [f"{value!r} {unit}" for value in values]

@@ -55,7 +55,7 @@ class Orbit:
     def reduced(self) -> orbits.Orbit:
         """The orbit in dimensionless form; raises NoOrbit if it is not of the reduced system."""
         if not isinstance(self.found, orbits.Orbit):
-            raise NoOrbit("this needs an orbit of the reduced system, and the pair has other terms")
+            raise NoOrbit("this needs an orbit of the reduced system, but the pair has other terms")
         return self.found
 
     @property
@@ -92,10 +92,11 @@ class Orbit:
 
     @property
     def holding_moments(self) -> tuple[float, float]:
-        """Constant moments that hold the speed of an eccentric pair, besides those stated.
+        """Constant moments that keep an eccentric pair at its speed, in addition to those stated.
 
-        On wheels 3 and 2, as shares of M_3 and M_2; 0 if nothing depends on the mean rotation. They
-        balance what friction and damping do to it, and a run under them repeats.
+        They act on wheels 3 and 2, and are given as shares of M_3 and M_2. They balance the effect
+        of friction and damping on the mean rotation, so that a run with them repeats. They are 0 if
+        nothing depends on the mean rotation.
         """
         found = self.found
         return found.holding_moments if isinstance(found, GeneralOrbit) else (0.0, 0.0)
@@ -166,15 +167,15 @@ def find_orbit(
     Parameters
     ----------
     pair : Pair
-        The gear pair. Where eccentric wheels would leave the stated speed, the orbit is that of a
-        drive which holds it, see `Orbit.holding_moments`.
+        The gear pair. If eccentric wheels would drift from the stated speed, the orbit is that of
+        a drive that holds the speed; see `Orbit.holding_moments`.
     variant : str or Variant
         Which damping terms act where.
     nu : float or str
         Mesh frequency ν_s, or the speed of wheel 3, as ``"3000 rpm"``.
     periods : int
-        Its least period, in mesh periods. If single teeth differ or wheels are eccentric, a
-        multiple of the mesh periods after which the same teeth meet, or the wheels have turned.
+        Least period of the orbit, in mesh periods. If single teeth differ or wheels are eccentric,
+        it must be a multiple of the number of mesh periods after which the excitation repeats.
     start : tuple or Orbit, optional
         (y, dy/dτ_s) at the initial phase near the orbit, each with its unit or as a number of
         static deflections; or an orbit nearby. By default several initial conditions are tried;

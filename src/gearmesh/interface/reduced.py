@@ -14,6 +14,6 @@ def reduced_problem(pair: Pair, variant: str | Variant, nu: float | str) -> Prob
     if not is_reducible(problem):
         raise InputError(
             "pair: found unequal wheels, run-out, profile deviation, Fourier stiffness or another "
-            "general term; allowed here are pairs without them; orbits and branches serve all"
+            "general term; allowed here are pairs without any; orbits and branches take all pairs"
         )
     return problem

@@ -9,9 +9,9 @@ NORMAL_MESH, CONTACT_LOSS, INVERSE_MESH = 1, 0, -1
 """Regimes of the mesh: y >= 0, -s < y < 0 and y <= -s."""
 
 ONSET = 1e-6
-"""Depth in y_st below which Hertz' force is linear, so that it has a Taylor series at 0.
+"""Depth in y_st below which Hertz' force is close to linear, so that it has a Taylor series at 0.
 
-Above it, the force differs from that of the power by less than its square, relatively.
+At a depth d, the relative difference from Hertz' power law is below (`ONSET` / d)^2.
 """
 
 
@@ -37,9 +37,9 @@ def elastic_force(
     """Return the elastic force of eq. (1), in the unit of `c` times `y`.
 
     With d = y in normal mesh and d = y + s in inverse mesh it is C (d + c_2 d abs(d) + c_3 d^3);
-    without the `quadratic` c_2 and the `cubic` c_3 this is C (y H1 + (y + s) H2). An `exponent` p
-    other than 1 puts d (d^2 + o^2)^((p - 1)/2), with o = `ONSET`, in place of d: Hertz' power of d
-    beyond a linear onset.
+    without the `quadratic` c_2 and the `cubic` c_3 this is C (y H1 + (y + s) H2). If the `exponent`
+    p is not 1, d (d^2 + o^2)^((p - 1)/2) with o = `ONSET` replaces the first d. This is Hertz'
+    power of d, made linear near 0.
     """
     depth = y - touching_level(regime, backlash)
     stiffening = (quadratic * regime + cubic * depth) * depth

@@ -1,17 +1,17 @@
 """Flanks that deviate from the ideal one: pitch errors of single teeth, and tip relief.
 
 A deviation belongs to a tooth, not to the mesh, so each pair of teeth touches and parts by itself.
-Pair p presses where y exceeds its distance a_p(t), with the force c_p (y - a_p) for its stiffness
-c_p. y is the relative motion of eq. (3), so damping and friction are those of the paper. This is
-how Velex and Maatar (J. Sound Vib. 191, 1996, 629) put deviations into a mesh of springs, with one
-spring for each pair of spur teeth. The back flanks are taken without deviations.
+Pair p presses while y exceeds its distance a_p(t). Its force is c_p (y - a_p), where c_p is its
+stiffness. y is the relative motion of eq. (3), so damping and friction are those of the paper.
+Velex and Maatar (J. Sound Vib. 191, 1996, 629) put deviations into a mesh of springs in this way;
+here spur teeth have one spring for each pair. The back flanks have no deviations.
 
 Pitch errors are the distances of the flanks from their ideal places: the index deviations F_p of
 ISO 1328-1, positive where a tooth stands out towards its mate.
 
-Tip relief is linear along the path of contact, as in Lin, Oswald and Townsend (Mech. Mach. Theory
-29, 1994, 1115): 0 where it starts, and C_a at the tip. A pair enters on the tip of wheel 2 and
-leaves on that of wheel 3.
+Tip relief grows linearly along the path of contact, from 0 where it starts to C_a at the tip, as in
+Lin, Oswald and Townsend (Mech. Mach. Theory 29, 1994, 1115). A pair of teeth comes into contact at
+the tip of wheel 2 and leaves contact at the tip of wheel 3.
 """
 
 from gearmesh.model.functions import Number, entry
@@ -28,7 +28,7 @@ def distances(problem: Problem, phase: Number, segment: float) -> list[Number]:
     phase : float
         Mesh phase.
     segment : float
-        Any phase between the same two jumps; it determines the pairs, up to whole periods.
+        Any phase between the same two jumps of C(t), up to whole periods. It determines the pairs.
     """
     terms = problem.terms
     passed = phase - segment
@@ -39,7 +39,7 @@ def distances(problem: Problem, phase: Number, segment: float) -> list[Number]:
         for errors in (terms.pitch_errors_3, terms.pitch_errors_2):
             if errors:
                 distance -= entry(errors, periods + number)
-        # From the tip of wheel 3, and of wheel 2; positive inside the path.
+        # Distance along the path from the tip of wheel 3, then of wheel 2.
         for i, from_tip in enumerate((-place, place)):
             length = terms.tip_relief_length[i]
             inside = 0.5 * problem.contact_ratio + from_tip

@@ -1,7 +1,6 @@
 """Functions that the laws use on floats, on truncated Taylor series and on traced numbers alike.
 
-A number of another kind than float brings its own `sin`, `cos`, `sqrt`, `power` and
-`entry`.
+A number that is not a float has methods `sin`, `cos`, `sqrt`, `power` and `entry` of its own.
 """
 
 import math
@@ -45,7 +44,7 @@ def power(value: Number, exponent: float) -> Number:
 
 
 def entry(table: Sequence[float], place: Number) -> Number:
-    """Return the entry of `table` at the whole number `place`; the table repeats."""
+    """Return the entry of `table`, which repeats, at the whole number `place`."""
     if hasattr(place, "entry"):
         return place.entry(tuple(table))
     return table[round(place) % len(table)]

@@ -24,8 +24,8 @@ def involute(angle: float) -> float:
 
 def inverse_involute(value: float) -> float:
     """Return the angle whose involute is `value`, by Newton's method."""
-    # Both are above the angle, for inv(x) > x^3/3 and tan(x) < value + pi/2. The involute is
-    # convex, so Newton's method descends to it.
+    # Both bounds are above the angle x, for inv(x) > x^3/3 and tan(x) < value + pi/2. The involute
+    # is convex, so Newton's method descends to the angle from there.
     angle = min((3.0 * value) ** (1.0 / 3.0), math.atan(value + 0.5 * math.pi))
     for _ in range(50):
         step = (involute(angle) - value) / math.tan(angle) ** 2

@@ -32,9 +32,9 @@ def mesh_stiffness(problem: Problem, phase: Number, segment: float | None = None
 
 
 def pair_stiffnesses(problem: Problem, phase: Number, segment: float) -> list[Number]:
-    """Return the stiffness of each pair of teeth in contact, in C_s; they add up to C(t).
+    """Return the stiffness of each pair of teeth in contact, in C_s. Their sum is C(t).
 
-    Pairs share C(t) evenly where it is stated for the mesh.
+    If C(t) is stated for the whole mesh, the pairs share it evenly before their tooth factors act.
     """
     passed = since(phase, segment)
     terms = problem.terms
@@ -91,6 +91,6 @@ def _factor(problem: Problem, number: int) -> float:
 
 
 def backlash(problem: Problem, time: Number) -> Number:
-    """Return s(t) / y_st, without what the centres of the wheels add."""
+    """Return s(t) / y_st as it is stated, without the effect of moving wheel centres."""
     harmonics = problem.terms.backlash_harmonics
     return problem.backlash + harmonic_sum(harmonics, problem.nu * time)

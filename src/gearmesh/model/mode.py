@@ -21,10 +21,10 @@ class Mode:
     slip_sign : int
         Second sign of eq. (6), that of z_3' - z_2'; 0 while the flanks stick, with z_3' = z_2'.
     parted : bool
-        Whether the contact force is 0 although the flanks overlap (`GeneralTerms.non_adhesive`).
+        Whether the contact force is set to 0 because it would pull (`GeneralTerms.non_adhesive`).
     pressing : tuple of float
-        1 for each pair of teeth in contact that presses, 0 for the others, where pairs touch singly
-        (`gearmesh.model.flanks`). Normal mesh is then the regime in which any of them presses.
+        1 for each pair of teeth that presses and 0 for the others, if pairs touch singly
+        (`gearmesh.model.flanks`); else empty. The regime is normal mesh while any pair presses.
     """
 
     regime: int
@@ -36,19 +36,19 @@ class Mode:
 
 
 class Forces(NamedTuple):
-    """Forces in the mesh, in F_st: all that the wheels exert on each other.
+    """Stiffness of the mesh, and all forces that the wheels exert on each other, in F_st.
 
     Attributes
     ----------
     stiffness : float
         C / C_s.
     elastic : float
-        Elastic force, as the friction takes it.
+        Elastic force, from which the friction follows.
     contact : float
         Elastic and damping force of the flanks in contact, and damping of the lubricant in contact
         loss; positive where it presses the flanks of normal mesh.
     normal : float
-        What of it acts: all, or 0 while the flanks are parted.
+        The contact force that acts: `contact`, or 0 while the flanks are parted.
     friction : float
         F_T on wheel 3.
     moment_3, moment_2 : float

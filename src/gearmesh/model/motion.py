@@ -106,9 +106,10 @@ def relative_motion(problem: Problem, time: Number, q: Six, v: Six) -> tuple[Num
 def gap(problem: Problem, time: Number, q: Six) -> Number:
     """Return the backlash s(t) in y_st.
 
-    If it follows the centres of the wheels, it grows by 2 sin(alpha) times what their distance
-    grows by. The line of centres has the components sin(alpha) along y and cos(alpha) along z. The
-    centres move with the bodies and, where wheels are eccentric, about them.
+    If the backlash follows the wheels' centres, each increase of the centre distance increases it
+    by 2 sin(alpha) times as much. The line of centres has the components sin(alpha) along y and
+    cos(alpha) along z. The centres move with the bodies. The centre of an eccentric wheel also
+    turns about its axis.
     """
     s = backlash(problem, time)
     if not problem.terms.backlash_follows_centres:

@@ -82,7 +82,7 @@ class GeneralTerms:
     restoring_2, restoring_3 : float
         The elastic force is C (d + c_2 d abs(d) + c_3 d^3) at the depth d.
     restoring_power : float
-        The power p of Hertz: d abs(d)^(p - 1) stands in place of d in the elastic force.
+        The power p of Hertz: d abs(d)^(p - 1) replaces the first d in the elastic force.
     non_adhesive : bool
         Whether the contact force never pulls: while it would, it is 0, and so is the friction.
     damping_power : float
@@ -97,7 +97,7 @@ class GeneralTerms:
     tip_relief : tuple of two float
         How far the flanks of wheels 3 and 2 stand back at their tips, in y_st.
     tip_relief_length : tuple of two float
-        Lengths of both reliefs along the path of contact, in base pitches.
+        Lengths of the tip reliefs along the path of contact, in base pitches.
     """
 
     torque_harmonics_3: tuple[Harmonic, ...] = ()

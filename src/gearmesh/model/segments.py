@@ -48,8 +48,8 @@ def segments(problem: Problem) -> tuple[Segment, ...]:
     """Cut a mesh period of `problem` at the jumps and kinks of C(t) and the jumps of gamma(t).
 
     The rectangular wave and friction jump at the switches of C(t), as do factors of single teeth;
-    friction jumps at the pitch point too. Where pairs of teeth touch singly, others do so from each
-    switch on. Tables and tip relief have kinks.
+    friction jumps at the pitch point too. If pairs of teeth touch singly, the pairs in contact
+    change at each switch. Tables and tip relief have kinks.
     """
     rubs = problem.friction_coefficient != 0.0
     terms = problem.terms

@@ -63,9 +63,10 @@ def path_places(contact_ratio: float, points: int) -> list[float]:
 
 
 def extremes_of_pairs(pair: Sequence[float], contact_ratio: float) -> tuple[float, float]:
-    """Return the least and the greatest stiffness of the mesh whose pairs each have `pair`.
+    """Return the least and the greatest stiffness of a mesh, from the stiffness of each pair.
 
-    `pair` holds values at equal distances along the path of a pair, linear in between.
+    `pair` holds the stiffness of a pair at equal distances along its path of contact. It is linear
+    in between.
     """
     ends = path_places(contact_ratio, len(pair))
     knots = [(end - PITCH_PHASE, value) for end, value in zip(ends, pair, strict=True)]

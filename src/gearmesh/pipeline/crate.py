@@ -269,6 +269,6 @@ def _link(name: str) -> dict[str, str]:
 
 
 def _links(names: Iterable[str]) -> dict[str, str] | list[dict[str, str]]:
-    """Link several entities; RO-Crate wants a single one without a list around it."""
+    """Link several entities. RO-Crate wants no list around a single link."""
     links = [_link(name) for name in names]
     return links[0] if len(links) == 1 else links

@@ -365,9 +365,9 @@ def prefix(plan: Plan) -> str:
 
     It takes the place of Snakemake's own prefix, so it repeats that a command fails with any part
     of it: the logs are written through a pipe. Jobs run side by side, so the matrix library takes
-    one thread for each. With more, a small matrix takes a hundred times as long. Settings
-    of the caller's Python do not reach the jobs. Without bytecode, as in many containers, each job
-    would compile all modules; with warnings as errors it would fail for a library's sake.
+    one thread for each. With more, a small matrix takes a hundred times as long. Jobs do
+    not inherit settings of the caller's Python. Without bytecode, as in many containers, each job
+    would compile all modules. With warnings as errors, a warning in a library would stop a job.
     """
     folder = shlex.quote(str(Path(sys.executable).parent))
     study = shlex.quote(str(plan.study.path))

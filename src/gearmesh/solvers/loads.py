@@ -1,10 +1,10 @@
 """What engineers report of a run: tooth force, transmission error, bearing forces.
 
-The general solver locates the extremes between the samples of the kept revolutions. Those of the
-reduced one are measured on the samples. The tooth force jumps where the rectangular stiffness
-switches, and where damped teeth meet or part; there, its values on both sides count too. Elsewhere
-the extremes are then exact to about (2 pi order / samples per period)^2 / 8 of the amplitude: 2e-4
-for the third harmonic and 256 samples.
+The general solver locates the extremes of the kept revolutions between the samples. For the reduced
+solver they are taken from the samples. The tooth force jumps where the rectangular stiffness
+switches, and where damped teeth meet or part, so its values on both sides of each jump are added to
+the samples. The error of the extremes is then about (2 pi order / samples per period)^2 / 8 of the
+amplitude, which is 7e-4 for the third harmonic and 256 samples.
 """
 
 from dataclasses import dataclass
@@ -34,7 +34,7 @@ class Loads:
     force_bearing_3_max, force_bearing_2_max : float
         Greatest amount of the force on the bearing of each wheel, along the mesh line.
     force_bearing_3_z_max, force_bearing_2_z_max : float
-        The same across it; not a number in the reduced system, which does not contain it.
+        The same across the mesh line; NaN for the reduced system, which does not contain it.
     """
 
     force_max: float
@@ -66,7 +66,7 @@ def loads(problem: Problem, samples: Samples) -> Loads:
 
 
 def _on_samples(problem: Problem, samples: Samples) -> np.ndarray:
-    """Return the extremes as `Samples.extremes` has them, of a run of the reduced solver."""
+    """Return the extremes of a run of the reduced solver, in the form of `Samples.extremes`."""
     jumps = *_at_switches(problem, samples), *_at_contacts(problem, samples)
     rows = (
         np.concatenate([samples.force_normal, *jumps]),

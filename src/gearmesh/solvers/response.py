@@ -58,13 +58,14 @@ class Samples:
 
     `y`, `v` and `a` are y, dy/dtau_s and d2y/dtau_s2, the stiffnesses are in C_s, the forces in
     F_st, `regime` as in `gearmesh.model.contact`. `force_normal` is the elastic and the damping
-    force, `transmission_error` the sum of R_b phi of both wheels, and `force_bearing_3` and
-    `force_bearing_2` what the bodies exert on their bearings along the mesh line.
-    `force_bearing_3_z` and `force_bearing_2_z` act across it; the reduced system does not contain
-    them.
+    force, and `transmission_error` the sum of R_b phi of both wheels. `force_bearing_3` and
+    `force_bearing_2` are the forces of the bodies on their bearings along the mesh line.
+    `force_bearing_3_z` and `force_bearing_2_z` act across it, and are None for the reduced system,
+    which does not contain them.
 
-    `extremes` has the least and greatest `force_normal`, `transmission_error` and the four forces
-    on bearings in this order, shape (6, 2), where the solver has located them between the samples.
+    `extremes`, of shape (6, 2), has the least and the greatest value of `force_normal`,
+    `transmission_error` and the four bearing forces, in the order of the fields. It is None if the
+    solver does not locate them between the samples.
     """
 
     time: np.ndarray
@@ -118,7 +119,7 @@ class Response:
     n_contact_losses : int or None
         Number of times that contact is lost in the kept revolutions.
     located_contact_force : float
-        The least contact force, if the solver has located it; see `least_contact_force`.
+        The least contact force that the solver has located, else NaN; see `least_contact_force`.
     turning_points_per_period : float
         Mean number of extrema in a kept mesh period.
     y_max_error, y_min_error : float
@@ -165,8 +166,8 @@ class Response:
     def least_contact_force(self) -> float:
         """Least force that presses touching flanks in the kept revolutions, in F_st.
 
-        It is negative if they pull, and infinity if they never touch. The general solver locates
-        it. That of the reduced solver is measured on the samples, and not a number without them.
+        It is negative if they pull, and infinite if they never touch. The general solver locates
+        it. For the reduced solver it is taken from the samples, and is NaN if there are none.
         """
         if self.samples is None or not np.isnan(self.located_contact_force):
             return self.located_contact_force

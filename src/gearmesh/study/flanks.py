@@ -1,4 +1,4 @@
-"""Pitch errors and tip relief of a pair: which are allowed, and in dimensionless form."""
+"""Pitch errors and tip relief of a pair: checks, and conversion to dimensionless form."""
 
 import math
 from collections.abc import Sequence
@@ -16,7 +16,10 @@ def base_pitch(pair: "Parameters") -> float:
 
 
 def check_flanks(pair: "Parameters") -> None:
-    """Raise ValueError, with the name of the parameter first, if the flanks do not fit."""
+    """Raise ValueError if pitch errors or tip relief do not suit the pair.
+
+    The message begins with the name of the parameter.
+    """
     teeth = of_wheels(pair.teeth)
     if len(pair.pitch_errors) not in (0, 2):
         raise ValueError(
@@ -45,9 +48,9 @@ def check_flanks(pair: "Parameters") -> None:
 
 
 def centred(lists: Sequence[Sequence[float]]) -> list[tuple[float, ...]]:
-    """Return pitch errors less their mean, which turns the wheel and does no more.
+    """Return the pitch errors of each wheel minus their mean.
 
-    Nothing is left of errors that are all equal.
+    The mean only turns the wheel. If all errors of a wheel are equal, its tuple is empty.
     """
     found = []
     for errors in lists:
@@ -58,7 +61,7 @@ def centred(lists: Sequence[Sequence[float]]) -> list[tuple[float, ...]]:
 
 
 def flanks_of(pair: Any) -> dict[str, Any]:
-    """Return the fields of `GeneralTerms` that state the flanks, in y_st and base pitches."""
+    """Return the fields of `GeneralTerms` for the flanks, in y_st and base pitches."""
     y_st, pitch = pair.static_deflection, base_pitch(pair)
     errors = [
         tuple(error / y_st for error in one) for one in centred(pair.pitch_errors or ((), ()))

@@ -154,7 +154,9 @@ class Pair(Parameters):
                 names[names.index(alternative.replaces[0])] = name
                 names = [other for other in names if other not in alternative.replaces]
         if any(getattr(self, table) for table in TABLES):
-            follows = Statement(None, DERIVED, "greatest, and least over greatest, of the table")
+            follows = Statement(
+                None, DERIVED, "of the table: greatest value, and least over greatest"
+            )
             statements = {**dict.fromkeys(LEVELS, follows), **statements}
         missing = Statement(None, DEFAULT)
         return [self._listed(name, statements.get(name, missing)) for name in names]

@@ -26,7 +26,7 @@ _STIFFNESSES = (
 
 
 MOST_HARMONICS = 100
-"""Each harmonic shortens the steps of the solver: a run with 2,000 would take many minutes."""
+"""Higher harmonics shorten the steps of the solver: a run with 2,000 would take many minutes."""
 
 
 class Parameters(Section):
@@ -160,7 +160,7 @@ class Parameters(Section):
         "1", "c_3", "cubic part of the elastic force, in 1/y_st²", -10.0, 10.0, default=0.0
     )
     restoring_power: float = quantity(
-        *("1", "p", "power of the depth in the elastic force, as Hertz' 10/9 or 3/2", 1.0, 2.0),
+        *("1", "p", "power of the depth in the elastic force: for Hertz 10/9 or 3/2", 1.0, 2.0),
         default=1.0,
     )
     non_adhesive: bool = quantity(
@@ -179,17 +179,17 @@ class Parameters(Section):
         default=(),
     )
     backlash_follows_centres: bool = quantity(
-        *("1", "s(y, z)", "whether s follows the distance of the wheels' centres", 0.0, 1.0),
+        *("1", "s(y, z)", "whether s changes with the distance of the wheels' centres", 0.0, 1.0),
         structured=True,
         default=False,
     )
     pitch_errors: tuple[tuple[float, ...], ...] = quantity(
-        *("mm", "F_p", "how far each tooth stands out, for the teeth of wheels 3 and 2"),
+        *("mm", "F_p", "how far each tooth stands out, a list for each of wheels 3 and 2"),
         *(-10.0, 10.0),
         default=(),
     )
     tip_relief: tuple[float, float] = quantity(
-        *("mm", "C_a", "how far the flanks of the wheels stand back at the tip", 0.0, 10.0),
+        *("mm", "C_a", "how far the flanks of wheels 3 and 2 stand back at the tip", 0.0, 10.0),
         of_wheels=True,
         default=(0.0, 0.0),
     )
@@ -210,12 +210,12 @@ class Parameters(Section):
         "mm", "y'_0", "initial dy/dτ_s, τ_s = Ω_s t", -1e3, 1e3, default=0.0
     )
     initial_coordinates: tuple[float, ...] = quantity(
-        *("mm", "q_0", "initial R_b3 φ_3, R_b2 φ_2, y_3, y_2, z_3, z_2; as y_0 if open"),
+        *("mm", "q_0", "initial R_b3 φ_3, R_b2 φ_2, y_3, y_2, z_3, z_2; by default as for y_0"),
         *(-1e3, 1e3),
         default=(),
     )
     initial_rates: tuple[float, ...] = quantity(
-        *("mm", "q'_0", "initial dq/dτ_s of the same six, τ_s = Ω_s t; 0 if open", -1e3, 1e3),
+        *("mm", "q'_0", "initial dq/dτ_s of these six, τ_s = Ω_s t; by default 0", -1e3, 1e3),
         default=(),
     )
     revolutions: int = quantity("1", "n_r", "revolutions that are run", 1, 10_000, default=5)

@@ -36,7 +36,7 @@ def problem_of(pair: "Pair", variant: Variant, nu: float) -> Problem:
 
 @lru_cache(maxsize=64)
 def _at_resonance(pair: "Pair", variant: Variant) -> Problem:
-    """State the run at ν_s = 1 from static equilibrium; all else is the same at any frequency."""
+    """State a run at ν_s = 1 from static equilibrium. Only ν_s changes with the frequency."""
     y_st, c_s = pair.static_deflection, pair.stiffness_mean
     eccentricity_3, eccentricity_2 = pair.eccentricity
     wheel_3, wheel_2 = (_wheel(pair, place) for place in (0, 1))

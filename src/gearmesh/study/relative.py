@@ -29,9 +29,10 @@ _LEAST_RATIO = 1e-3
 
 
 def with_levels(data: dict[str, Any]) -> dict[str, Any]:
-    """Add C_max and κ, if they are missing, where a table states the stiffness.
+    """Add C_max and κ if they are missing and a table states the stiffness.
 
-    They are the greatest value of C(t), and the least over it. The motion does not depend on them.
+    C_max is the greatest value of C(t), and κ the least value divided by the greatest. The motion
+    does not depend on them.
     """
     stated = [name for name in TABLES if data.get(name)]
     missing = [name for name in LEVELS if data.get(name) is None]

@@ -1,8 +1,8 @@
 """Instructions for the Taylor coefficients of one order, operation by operation.
 
-The terms of a product that were known an order earlier are added first, so that the sum waits for
-the newest ones only. Every operation is an IEEE operation, with explicit fused multiply-adds, so
-all processors give the same bits.
+The terms of a product that are known from earlier orders are added first, so only the last
+additions wait for the newest coefficients. Every operation is an IEEE operation, and fused
+multiply-adds are explicit, so all processors give the same bits.
 """
 
 from collections.abc import Sequence
@@ -29,8 +29,11 @@ from gearmesh.solvers.full.tape import (
 from gearmesh.solvers.lanes.types import DOUBLE, INT64, call_llvm
 
 Shape = tuple[int, int, tuple[int, ...], int]
-"""An operation without its numbers: what it does, the row that it writes, the rows that it takes,
-and how many numbers it has."""
+"""An operation without its numbers.
+
+Its items are the code of the operation, the row that it writes, the rows that it takes, and how
+many numbers it has.
+"""
 
 
 class _Order:
@@ -122,10 +125,13 @@ class First(_Order):
             at += many
 
     def _entry(self, row: int, first: int, size: int) -> ir.Value:
-        """Return the number at the whole number in a row, of `size` numbers that repeat."""
+        """Return the entry of a table of `size` numbers at the whole number in `row`.
+
+        The table begins at the number `first`, and repeats.
+        """
         place = self.builder.fptosi(call_llvm(self.builder, "rint", self._load(row, 0)), INT64)
         length = ir.Constant(INT64, size)
-        # The remainder has the sign of the place.
+        # srem gives a negative remainder for a negative place.
         place = self.builder.srem(place, length)
         place = self.builder.srem(self.builder.add(place, length), length)
         place = self.builder.add(place, ir.Constant(INT64, first))
@@ -133,7 +139,7 @@ class First(_Order):
 
 
 class Further(_Order):
-    """Instructions for the coefficients of an order from 1 on."""
+    """Instructions for the coefficients of order 1 or higher."""
 
     def emit(self, operations: Sequence[Shape]) -> None:
         """Write the instructions of all operations, in their order."""
@@ -163,7 +169,7 @@ class Further(_Order):
             at += many
 
     def _convolutions(self, pairs: list[tuple[int, int, bool]]) -> dict[Any, ir.Value]:
-        """Return the sums of a_j b_(k-j), or j a_j b_(k-j), over 0 < j < k."""
+        """Return the sum of a_j b_(k-j), or of j a_j b_(k-j), over 0 < j < k for each pair."""
         if not pairs:
             return {}
         builder = self.builder
@@ -248,7 +254,7 @@ class Further(_Order):
         self._store(out, self.k, self.builder.fdiv(rest, doubled))
 
     def _power(self, out: int, base: int, exponent: ir.Value) -> None:
-        # k b_0 p_k is the sum of (e (k - j) - j) b_(k-j) p_j over j < k, with the exponent e.
+        # For p = b^e, k b_0 p_k is the sum of (e (k - j) - j) b_(k-j) p_j over j < k.
         whole = self._fma(
             self._load(base, self.k), self._load(out, 0), self.middles[out, base, False]
         )
@@ -260,7 +266,10 @@ class Further(_Order):
 
 
 def _convolved(operation: Shape) -> list[tuple[int, int, bool]]:
-    """Return the pairs of series that an operation convolves, and if one is differentiated."""
+    """Return the pairs of series that an operation convolves, as `_convolutions` takes them.
+
+    The third item of a pair states whether the first series is differentiated.
+    """
     code, out, rows, _ = operation
     if code in (PRODUCT, SIGNED):
         return [(rows[0], rows[1], False)]

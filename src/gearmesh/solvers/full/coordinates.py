@@ -1,9 +1,9 @@
-"""Which coordinates a run needs, and in which mesh periods it differs.
+"""Which coordinates a run needs, and how its mesh periods differ from each other.
 
-Without run-out the rotations act through their sum alone, and nothing that moves across the mesh
-line acts back, unless the backlash follows the wheels' centres. Two or three coordinates then
-determine y: R_b3 phi_3 + R_b2 phi_2, and y_3 - y_2 for equal bodies on equal bearings, or y_3 and
-y_2.
+Without run-out only the sum of the rotations, R_b3 phi_3 + R_b2 phi_2, matters. Motion across the
+mesh line does not affect y, unless the backlash follows the wheels' centres. The sum and the
+displacements along the mesh line then determine y: y_3 - y_2 alone if equal bodies are on equal
+bearings, otherwise y_3 and y_2.
 """
 
 import numpy as np
@@ -25,8 +25,8 @@ def signs_act(problem: Problem) -> bool:
 def embedding(problem: Problem, sampled: bool = False) -> np.ndarray:
     """Return the six coordinates as sums of those that are integrated, shape (6, n).
 
-    The columns are orthogonal. Those that y depends on stand first. A run that is `sampled` has the
-    displacements across the mesh line besides, for the forces on the bearings.
+    The columns are orthogonal. The coordinates that y depends on come first. A run that is
+    `sampled` also needs the displacements across the mesh line, for the forces on the bearings.
     """
     if problem.has_run_out:
         return np.eye(6)
@@ -92,7 +92,7 @@ def kinds_of_period(problem: Problem) -> tuple[list[float], np.ndarray]:
 
 
 def _marked_teeth(problem: Problem, phase: float) -> tuple[int, ...]:
-    """Return for every pair in contact which of the factors of teeth act."""
+    """Return which tooth factors act on each pair in contact."""
     acting = []
     for pair in touching_pairs(phase, problem.contact_ratio):
         for i, (wheel, tooth, _) in enumerate(problem.terms.tooth_factors):

@@ -1,8 +1,9 @@
 """One run in the six coordinates, from event to event.
 
-A step ends at the first of: a jump of C(t) or gamma(t), a boundary of the mesh periods, a turning
-point of y, the level of y that ends the regime, a change of a sign in eq. (6), the end of a spell
-of sticking, the length that the tolerance allows. Turning points come first: up to the first one
+A step ends at the first of: a jump of C(t) or gamma(t), the end of a mesh period, a turning point
+of y, the end of the regime, the moment at which a pair of teeth touches or parts by itself, a
+change of sign of the contact force, a change of a sign in eq. (6), the end of sticking, and the
+length that the tolerance allows. Turning points come first: up to the first one
 y is monotone, so its end value shows whether it passes a level, and no touch of a level is missed.
 
 What acts after an event follows from discrete facts, never from how close a number is to 0. The
@@ -45,7 +46,7 @@ GAP_CROSSED, PARTED, PAIR_TURNED = 7, 8, 9
 """Events that end a step, beside those of `signs`."""
 
 _SHORT = 0.1
-"""A shorter step is chosen for the errors of the rates, which are larger than the coordinates'."""
+"""In steps below this length the errors of the rates, not of the coordinates, limit the step."""
 
 _regime_of = inner(regime_of)
 
@@ -131,7 +132,7 @@ def _choose_step(case, series, remaining):
         for i in range(case.acting):
             size = max(size, abs(series[i, k]))
         if size > 0.0:
-            # The rates have k times the terms of the coordinates, and one power of the step less.
+            # A term of a rate is that of its coordinate times k and divided by the step.
             bound = case.tolerance / (k * size)
             step = min(step, bound ** (1.0 / k))
             if step < _SHORT:
@@ -163,7 +164,7 @@ def _rests(row, degree, step, rest):
 
 @inner
 def _find_event(case, segment, mode, state, step, series, rest, scaled, table):
-    """Return the share of the step up to its first event, and what that is."""
+    """Return the share of the step before its first event, and the event."""
     end = 1.0
     event = SEGMENT_ENDED if step == segment.end - mode.time else PASSED
     if not _rests(series[V], case.order - 1, step, rest):
@@ -312,9 +313,9 @@ def run(
     ----------
     cases : ndarray of `CASE`, shape (1,)
     segments : ndarray of `SEGMENT`
-        Of a mesh period, in their order; the last one ends with it.
+        Segments of a mesh period, in their order. The last one ends with the period.
     variants : ndarray of int, shape (periods + 1,)
-        Which kind of period each is: where single teeth have factors, periods differ.
+        The kind of each period. Periods differ if single teeth have factors.
     tape : tuple of ndarray
         Numbers and branches of `gearmesh.solvers.full.recurrences.Recurrences` for the segments of
         every kind of period.
@@ -342,7 +343,7 @@ def run(
     case = cases[0]
     summary = summaries[0]
     mode = modes[0]
-    # To count the references to the arrays would take as long as the series of a step.
+    # Counting references to the arrays would take as long as the series of a step.
     tape = unowned(tape[0]), unowned(tape[1])
     segments, variants, state = unowned(segments), unowned(variants), unowned(state)
     strobes, extrema, samples = unowned(strobes), unowned(extrema), unowned(samples)

@@ -17,7 +17,7 @@ from gearmesh.solvers.full.tape import (
 from gearmesh.solvers.response import MAXIMUM, MEASURED, MINIMUM
 
 EXTREMAL = (NORMAL, TRANSMISSION, *BEARINGS)
-"""Rows whose least and greatest values are located where they are sampled."""
+"""Rows whose least and greatest values are located, if the run is sampled."""
 
 SUMMARY = np.dtype(
     [
@@ -57,7 +57,7 @@ def take_value(summary, y):
 
 @inner
 def record_extremum(case, mode, y, extrema, summary):
-    """Record a turn of y at `y`; extrema beyond the room for them are counted, not kept."""
+    """Record an extremum of y; once `extrema` is full, further ones are only counted."""
     if mode.period < case.first_kept:
         return
     n = summary.extrema
@@ -116,7 +116,7 @@ def measure(case, mode, series, duration, summary):
 
 @inner
 def locate_extremes(case, series, duration, summary):
-    """Update the least and greatest values of what is sampled."""
+    """Update the least and greatest values of the rows in `EXTREMAL`."""
     for i in range(len(EXTREMAL)):
         row = series[EXTREMAL[i]]
         least = _least(row, case.order - 2, duration, 1.0)
@@ -129,7 +129,7 @@ def locate_extremes(case, series, duration, summary):
 def _least(row, degree, duration, sign):
     """Return the least value of `sign` times a series in <0; duration>.
 
-    Where it falls towards a point and rises again on an even grid, Newton's method follows.
+    The least value on an even grid is the start. Newton's method then improves it.
     """
     least = np.inf
     place = 0.0

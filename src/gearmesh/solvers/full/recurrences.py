@@ -1,8 +1,9 @@
 """The operations of a tape as machine code.
 
-Every branch of the laws becomes a few functions that fill the table of series, order by order. Two
-branches whose operations differ in their numbers only share the code: the numbers are data. LLVM
-translates it (`coefficients`) in some milliseconds, when a run first needs it in a process.
+Every branch of the laws becomes four functions that fill the table of series, order by order. The
+numbers are data, so branches whose operations differ only in their numbers share the functions.
+`coefficients` writes the instructions of a function. LLVM compiles them in a few milliseconds, when
+a run in this process first needs the function.
 """
 
 import ctypes
@@ -37,21 +38,21 @@ _SIGNATURE = ir.FunctionType(ir.VoidType(), _ARGUMENTS)
 
 
 MOTION, FORCES, NORMAL_FORCE, SAMPLED = range(4)
-"""Functions of a branch: y, the accelerations, the normal force, what else is sampled."""
+"""Functions of a branch: y, the accelerations, the normal force, the other sampled quantities."""
 
 N_PARTS = 4
 
 
 class Recurrences(NamedTuple):
-    """Recurrences of all branches of the laws, as the compiled solver takes them.
+    """Recurrences of all branches of the laws, in the form that the compiled solver takes.
 
     Attributes
     ----------
     numbers : ndarray
         Numbers of the operations.
     branches : ndarray of int, shape (`N_BRANCHES` * segments, 8)
-        Addresses of the four functions of a branch, and where their numbers begin; zeros for a
-        branch that cannot occur.
+        Addresses of the four functions of a branch, then the places in `numbers` where their
+        numbers begin. A branch that cannot occur has zeros.
     height : int
         Number of rows that the table of series needs.
     """
@@ -70,7 +71,7 @@ def recurrences(problem: Problem, segments: Iterable[float], sampled: bool) -> R
     segments : iterable of float
         A mesh phase in each segment.
     sampled : bool
-        Whether the function of what is sampled is wanted.
+        As for `gearmesh.solvers.full.coordinates.embedding`.
     """
     return _recurrences(laws_of(problem), tuple(segments), sampled)
 
@@ -90,7 +91,7 @@ def _recurrences(laws: Problem, segments: tuple[float, ...], sampled: bool) -> R
             places.append(len(numbers))
             numbers += [number for operation in part for number in _numbers(operation)]
             height = max([height, *(out + 2 for _, out, _ in part)])
-        places[FORCES] = places[MOTION]  # the accelerations continue y
+        places[FORCES] = places[MOTION]  # this function carries out the operations of y too
         moves, *others = (tuple(_shape(operation) for operation in part) for part in parts)
         forces, presses, sample = others
         wanted.append(((moves, ()), (forces, moves), (presses, ()), (sample, ())))
@@ -115,7 +116,7 @@ def _shape(operation: Operation) -> Shape:
 
 
 def _numbers(operation: Operation) -> tuple[float, ...]:
-    """Return the numbers of an operation; those of a sum or an angle begin with its constant."""
+    """Return the numbers of an operation; a sum or an angle has its constant first."""
     code, _, operands = operation
     if code in SUMS:
         summands, constant = operands
@@ -169,7 +170,7 @@ def _emit(function: ir.Function, first: Sequence[Shape], second: Sequence[Shape]
 
 @cache
 def _engine() -> binding.ExecutionEngine:
-    """Return what holds all compiled functions, for the life of the process."""
+    """Return the engine that holds all compiled functions for the life of the process."""
     target = binding.Target.from_default_triple().create_target_machine(
         cpu=binding.get_host_cpu_name(),
         features=binding.get_host_cpu_features().flatten(),
@@ -183,7 +184,7 @@ _names = (f"gearmesh_recurrence_{i}" for i in count())
 
 
 _Function = tuple[tuple[Shape, ...], tuple[Shape, ...]]
-"""What a function carries out: operations, and others that are two orders ahead of them."""
+"""Operations that a function carries out, and those that it carries out two orders ahead."""
 
 _compiled: dict[_Function, int] = {}
 """Addresses of the functions that have been compiled, for the life of the process."""
@@ -196,10 +197,11 @@ _failures: list[BaseException] = []
 
 
 def _compiles_itself(branch: np.ndarray, part: int, function: _Function) -> int:
-    """Return the address of a function that takes its own place by compiled code when called.
+    """Return the address of a function that replaces itself by compiled code when first called.
 
-    A problem has many branches, and a run reaches few of them. Compiled code cannot raise what
-    happens meanwhile: `raise_failures` does.
+    A problem has many branches and a run reaches few of them, so few functions are compiled. An
+    exception cannot pass through the compiled code that calls this function, so it is stored, and
+    `raise_failures` raises it later.
     """
 
     def call(*arguments: Any) -> None:
@@ -214,17 +216,19 @@ def _compiles_itself(branch: np.ndarray, part: int, function: _Function) -> int:
 
 
 def raise_failures() -> None:
-    """Raise what happened while a run had a function compiled, such as an interruption."""
+    """Raise the exception, such as an interruption, that `_compiles_itself` has stored."""
     if _failures:
-        raise _failures.pop()
+        error = _failures[0]
+        _failures.clear()
+        raise error
 
 
 def _compile(function: _Function) -> int:
     """Compile a function and return its address.
 
-    The function takes the table of series, its numbers, the sign of y', and the orders from which
-    and before which it works. The operations ahead, whose numbers precede the others, are those of
-    y: the accelerations give the coefficients of the coordinates two orders on.
+    Its arguments are the table of series, its numbers, the sign of y', the first order, and the
+    order before which it stops. The operations that run two orders ahead are those of y, since the
+    accelerations of order k give the coordinates of order k + 2. Their numbers come first.
     """
     module = ir.Module()
     module.triple = binding.get_default_triple()

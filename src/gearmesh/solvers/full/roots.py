@@ -17,13 +17,13 @@ MAX_DEGREE = 28
 NEVER = 2.0
 """What `first_change` returns when the sign does not change in <0; 1>."""
 
-# Number of halvings. Roots that are closer than the last half cannot be separated: a pair counts as
-# none.
+# Number of halvings. Two roots in the same narrowest interval cannot be separated, and count as no
+# root.
 _DEPTH = 44
 _NARROWEST = 0.5**_DEPTH
 
 WIDTH = MAX_DEGREE + 2
-"""Length of a row: coefficients, and in the last place the width of their interval."""
+"""Length of a row: the coefficients, then the width of their interval in the last place."""
 
 TABLE_ROWS = _DEPTH + 3
 """Rows of the workspace of `first_change`."""
@@ -123,9 +123,10 @@ def _halve(parent, left, right, degree):
 
 @njit
 def _keeps_sign(coefficients, sign):
-    """Return whether a bound from below shows that `sign` times the polynomial is positive.
+    """Return whether a lower bound shows that `sign` times the polynomial is positive in <0; 1>.
 
-    The bound is the least value of the first three terms, less what the others can take away.
+    The bound is the least value of the first three terms, minus the sum of the absolute values of
+    the other coefficients.
     """
     rest = 0.0
     for k in range(3, coefficients.size):
@@ -135,7 +136,7 @@ def _keeps_sign(coefficients, sign):
     c = sign * coefficients[2] if coefficients.size > 2 else 0.0
     if a <= 0.0 or a + b + c <= 0.0:
         return False
-    # A parabola that is positive at 0 and 1 has its least value between them, or none below.
+    # The parabola is positive at 0 and 1. It can be negative only if its vertex lies in between.
     return not (c > 0.0 and -2.0 * c < b < 0.0 and 4.0 * a * c <= b * b)
 
 
@@ -146,12 +147,13 @@ def first_change(coefficients, degree, sign, table):
     Parameters
     ----------
     coefficients : ndarray, shape (degree + 1 or more,)
-        Of powers of s. A root at 0 is stated by leading coefficients that are exactly 0: there
-        the sign is that of the first coefficient that is not.
+        Coefficients of the powers of s. If the first ones are exactly 0, the polynomial has a
+        root at 0, and its sign after it is that of the first coefficient that is not 0.
     degree : int
         At most `MAX_DEGREE`.
     sign : float
-        +1 or -1, the sign from the start; 0.0 is returned if the polynomial has the other one.
+        +1 or -1: the sign at the start. If the polynomial starts with the other sign, 0.0 is
+        returned.
     table : ndarray, shape (`TABLE_ROWS`, `WIDTH`)
         Workspace.
     """
@@ -176,7 +178,7 @@ def first_change(coefficients, degree, sign, table):
 
 @njit
 def _search(coefficients, degree, sign, table):
-    """Go through the intervals from left to right; row `depth` of the table is the next one."""
+    """Search the intervals from left to right; row `depth` of the table holds the next one."""
     depth = 0
     low = 0.0
     table[0, WIDTH - 1] = 1.0

@@ -70,7 +70,7 @@ def integrate(
     samples_per_period : int
         Samples of the time course in each kept mesh period; 0 for none.
     order : int, optional
-        Degree of the Taylor polynomials, 4 to 28; by default what suits the tolerance.
+        Degree of the Taylor polynomials, 4 to 28; by default the one that suits the tolerance.
     estimate_errors : bool
         Whether the run has a companion, `LOOSENING` times less accurate and displaced by the
         tolerance at the start, whose difference gives `Response.y_max_error`, `y_min_error` and
@@ -102,24 +102,24 @@ def integrate(
 
 
 class Propagation:
-    """Motions of one problem over mesh periods, from one start after the other.
+    """Integration of one problem over some mesh periods, from any starting state.
 
     Parameters
     ----------
     problem : Problem
-        Its initial state and its revolutions do not matter.
+        Its initial state and its number of revolutions are ignored.
     periods : int
-        Mesh periods from t = 0.
+        Number of mesh periods to integrate, from t = 0.
     tolerance : float
     share : float
-        Share of each mesh period that is integrated; with one period, where the motion ends.
+        Share of each mesh period that is integrated. If `periods` is 1, the motion ends there.
     """
 
     def __init__(
         self, problem: Problem, periods: int, tolerance: float, share: float = 1.0
     ) -> None:
-        # A run takes whole revolutions: with a "revolution" of one period it takes any number of
-        # mesh periods. The wheels keep their teeth.
+        # A run lasts a whole number of revolutions. With teeth = 1 a "revolution" is one mesh
+        # period, so a run can last any number of periods. The wheels keep their real teeth.
         run = replace(
             problem,
             wheels=problem.both_wheels,
@@ -131,7 +131,12 @@ class Propagation:
         self._run = _Run(run, tolerance, 0, suitable_order(tolerance), share=share)
 
     def end(self, six: np.ndarray) -> np.ndarray:
-        """Return where the motion from six coordinates and their rates ends, shape (12,).
+        """Return the coordinates and rates at the end of the motion, shape (12,).
+
+        Parameters
+        ----------
+        six : ndarray, shape (12,)
+            The six coordinates at the start, then their rates.
 
         Raises
         ------
@@ -147,11 +152,10 @@ class Propagation:
 
 
 class _Run:
-    """A run from its start to its end; `displacement` displaces wheel 3 at the start.
+    """A run from its start to its end.
 
-    The mesh periods are cut off after a `share` of them.
-
-    If the run has more extrema than there is room for, it is integrated again with room for all.
+    `displacement` displaces wheel 3 at the start. Each mesh period is cut off after a `share` of
+    it. If there is no room for all extrema of the run, it is integrated again with enough room.
     """
 
     def __init__(
@@ -230,14 +234,14 @@ class _Run:
         return State(y, v, b, b_rate, tuple(six.tolist()), periods, branches)
 
     def all_six(self) -> np.ndarray:
-        """Return the six coordinates and their rates; what is not integrated is 0."""
+        """Return the six coordinates and their rates; those that are not integrated are 0."""
         n = self.embedding.shape[1]
         both = self.embedding @ self.state[:n], self.embedding @ self.state[6 : 6 + n]
         return np.concatenate(both)
 
     @property
     def rotation_drift(self) -> float:
-        """Change of (phi_3 - phi_2)/2 over the run, in rad; not a number if it is left out."""
+        """Change of (phi_3 - phi_2)/2 over the run, in rad; NaN if it is not integrated."""
         if self.embedding[ROTATION_3, 0] != 1.0:
             return np.nan
         gained = self.all_six() - self.start
@@ -266,9 +270,9 @@ def _mode(problem: Problem) -> np.ndarray:
 
 
 def suitable_order(tolerance: float) -> int:
-    """Return the degree of the series at which a unit of time costs least at `tolerance`.
+    """Return the degree of the series at which integration is cheapest for `tolerance`.
 
-    Jorba and Zou's optimum is -ln(tolerance) / 2 + 1. Four more cost little, and save events.
+    Jorba and Zou's optimum is -ln(tolerance) / 2 + 1. Four more degrees cost little.
     """
     return min(MAX_DEGREE, max(8, math.ceil(5.0 - 0.5 * math.log(tolerance))))
 
@@ -300,7 +304,7 @@ def _case(problem: Problem, tolerance: float, order: int, coordinates: int) -> n
 
 
 def _segments(problem: Problem, share: float = 1.0) -> np.ndarray:
-    """Return the segments of a share of a mesh period as the kernel takes them."""
+    """Return the segments in the first `share` of a mesh period, in the form the kernel takes."""
     parts = [
         (min(part.end, share) * problem.period, part.gamma, len(part.pairs))
         for part in segments(problem)

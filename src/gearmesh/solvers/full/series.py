@@ -56,7 +56,7 @@ CASE = np.dtype(
         ("most_steps", np.float64),
     ]
 )
-"""What the kernel needs of a run beside its tape, and the settings of the solver.
+"""Data of a run that the kernel needs besides the tape, and the settings of the solver.
 
 `masses` are those of both bodies, and `pulls` the stiffness and damping of their bearings across
 the mesh line. `acting` counts the coordinates that y depends on, and `segments` the segments in a
@@ -66,8 +66,8 @@ mesh period.
 SEGMENT = np.dtype([("end", np.float64), ("gamma", np.float64), ("pairs", np.int64)])
 """A segment of the mesh period (`gearmesh.model.segments`).
 
-`end` is its end in tau_s from the boundary of the period, `gamma` is summed over the pairs, whose
-number is `pairs`.
+`end` is the time of its end in tau_s, from the start of the period. `pairs` is the number of pairs
+of teeth in contact, and `gamma` the sum of gamma over them.
 """
 
 MODE = np.dtype(
@@ -112,8 +112,8 @@ NEW, CONTINUED, UNDER_WAY = range(3)
 def level(case, regime, direction):
     """Return the value of y at which motion in `direction` leaves the regime.
 
-    A backlash that varies with time has no such level at the back flanks, and pairs of teeth that
-    touch singly have none at the front flanks.
+    It is infinite where there is no constant level: at the back flanks if the backlash varies, and
+    at the front flanks if pairs of teeth touch singly.
     """
     meets_front = regime == NORMAL_MESH or (regime == CONTACT_LOSS and direction > 0.0)
     if case.single_pairs and meets_front:
@@ -143,7 +143,7 @@ def branch_of(case, mode, variant):
 
 @inner
 def _carry_out(mode, tape, branch, part, start, stop, series):
-    """Carry out a part of the operations of a branch for the orders `start` to before `stop`."""
+    """Carry out one part of a branch for the orders from `start` up to, not including, `stop`."""
     numbers, branches = tape
     address, place = branches[branch, part], branches[branch, N_PARTS + part]
     rows = pointer_to(series)
@@ -187,7 +187,7 @@ def expand(case, mode, tape, variant, series, order):
 
 @inner
 def expand_outputs(case, mode, tape, variant, sampled, series):
-    """Fill the series of the normal force and, if wanted, of all that is sampled."""
+    """Fill the series of the normal force and, if `sampled`, of the other sampled quantities."""
     branch = branch_of(case, mode, variant)
     _carry_out(mode, tape, branch, NORMAL_FORCE, 0, case.order - 1, series)
     if sampled:

@@ -31,26 +31,28 @@ FIRST_FREE = 36
 
 The first six are the coordinates, the next six their rates. TIME counts mesh periods. CONSTANT
 is 1, SIGNS the product of both signs of eq. (6). V and BRACKET are the rates of Y and
-SWING. GAP is y + s(t). CONTACT and NORMAL are the force of flanks that touch, and what of it acts
-(`gearmesh.model.motion.Forces`). TRANSMISSION is the transmission error. BEARINGS are what the
-bodies exert on their bearings: of wheels 3 and 2 along the mesh line, then across it. PRESSING and
-DEPTH have a row for each pair of teeth that may touch singly: 1 where it presses, else 0, and how
-deep it is in contact.
+SWING. GAP is y + s(t). CONTACT and NORMAL are the fields `contact` and `normal` of
+`gearmesh.model.mode.Forces`. TRANSMISSION is the transmission error. BEARINGS are the forces on the
+bearings of wheels 3 and 2, first along the mesh line, then across it. PRESSING and DEPTH have three
+rows each, one for each pair of teeth that may touch singly. PRESSING is 1 if the pair presses, and
+0 if not. DEPTH is how deep the pair is in contact.
 """
 
 SUM, MOVES, ACCELERATE, PRODUCT, SIGNED, WAVE, SINE, ROOT, ROUND, ENTRY, POWER = range(11)
 """Operations.
 
-MOVES is a sum whose rate is wanted too, in the next row. SIGNED is a product with the sign of y'.
-WAVE is the sine and cosine of an angle that is linear in time. ENTRY is the entry of a table, which
-repeats, at a whole number. POWER has a constant exponent.
+MOVES is a sum whose rate goes into the next row. ACCELERATE is a sum that gives an acceleration.
+SIGNED is a product of two rows and the sign of y'. WAVE gives the sine and cosine of an angle that
+is linear in time. ENTRY looks up a whole number in a table that repeats. POWER has a constant
+exponent.
 """
 
 Operation = tuple[int, int, tuple[Any, ...]]
-"""What is done, the row that is written, and the operands.
+"""The code of the operation, the row that it writes, and its operands.
 
-The operands of a product are two rows. A sum has its summands, rows and factors, and a constant.
-WAVE has the slope and the constant of its angle, ENTRY a table after its row, POWER an exponent.
+The operands of a product are two rows. Those of a sum are its summands, each a row and a factor,
+and a constant. WAVE takes the slope and the constant of its angle. ENTRY takes a row and a table,
+and POWER a row and an exponent.
 """
 
 SUMS = (SUM, MOVES, ACCELERATE)
@@ -187,11 +189,11 @@ class _Trace:
         return self._result(SUM, operands)
 
     def single(self, code: int, value: _Traced) -> _Traced:
-        """Return what an operation makes of one number."""
+        """Return the result of an operation on one number."""
         return self.row(self._result(code, (self._row_exactly(value),)))
 
     def entry(self, table: tuple[float, ...], place: _Traced) -> _Traced:
-        """Return the entry of a table at a whole number."""
+        """Return the entry of `table` at the whole number `place`."""
         return self.row(self._result(ENTRY, (self._row_exactly(place), table)))
 
     def power(self, base: _Traced, exponent: float) -> _Traced:
@@ -213,7 +215,7 @@ class _Trace:
         return self.row(out), self.row(out + 1)
 
     def name(self, row: int, value: Any, code: int = SUM) -> _Traced:
-        """Give a number, a float too, a row of its own; MOVES gives its rate the next row."""
+        """Give a traced number or a float a row of its own; with MOVES its rate has the next."""
         terms = value.terms if isinstance(value, _Traced) else {}
         constant = value.constant if isinstance(value, _Traced) else float(value)
         self.operations.append((code, row, (tuple(sorted(terms.items())), constant)))
@@ -226,10 +228,10 @@ def branch_of(regime: int, sticks: bool, parted: bool) -> int:
 
 
 def laws_of(problem: Problem) -> Problem:
-    """Return `problem` with all fixed that its equations of motion do not contain.
+    """Return `problem` with fixed values for all that its equations of motion do not contain.
 
-    The laws know the time by the angles of the wheels only: in mesh periods they are the same for
-    all mesh frequencies.
+    Time enters the laws only through the angles of the wheels. If time is counted in mesh periods,
+    the laws are the same for all mesh frequencies.
     """
     return replace(problem, nu=TURN, revolutions=1, kept_revolutions=0, initial_state=None)
 
@@ -251,8 +253,9 @@ def record(
     Returns
     -------
     list
-        For each of the `N_BRANCHES` of each segment the operations of y, of the accelerations, of
-        the normal force, and of what else is sampled; nothing for a branch that cannot occur.
+        One item for each of the `N_BRANCHES` branches of each segment. It contains four lists of
+        operations: those of y, of the accelerations, of the normal force, and of the other sampled
+        quantities. It is empty for a branch that cannot occur.
     """
     columns = embedding(laws, sampled)
     branches: list[list[list[Operation]]] = []

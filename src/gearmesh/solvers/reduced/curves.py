@@ -39,7 +39,7 @@ LEAST_ALIGNMENT = 0.97
 """Cosine of the largest angle between neighbouring tangents."""
 
 LARGEST_CORRECTION = 0.3
-"""Of a step, in steps."""
+"""Largest correction of a predicted place, as a share of the step."""
 
 GROWTH = 1.4
 """Most by which a step is longer than the one before."""
@@ -190,9 +190,10 @@ def _land(statement, unit, points, events, row, origin, normal, corrections, roo
 
 @inner
 def _predict(points, last, length, nodes, table):
-    """Write the place at a distance behind the last point to the next row.
+    """Write the predicted place of the next point, `length` ahead of the last, to the next row.
 
-    A polynomial through the last points with their tangents, over the arclength, gives it.
+    The prediction extrapolates a polynomial in the arclength. The polynomial matches the last
+    points and their tangents.
     """
     count, s = 2 * min(last + 1, _HISTORY), 0.0
     for i in range(0, count, 2):
@@ -256,8 +257,8 @@ def trace(statement, unit, corrections, length, longest, limits, points, events,
     Returns
     -------
     count : int
-        Points found. The last one may lie outside the limits or farther than `FARTHEST`, or the
-        state of the next one is better taken at another phase.
+        Points found. The last one may lie outside the limits or farther than `FARTHEST`, or
+        close to the end of a regime, so that its state is better taken at another phase.
     length : float
         Length of the next step; `SHORTEST_STEP` or less if no step succeeds.
     """

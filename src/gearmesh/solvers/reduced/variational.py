@@ -129,7 +129,9 @@ def _level_ahead(regime, direction, backlash):
 
 @inner
 def _turns_nowhere(velocity, step, v, a):
-    """Return whether a bound of v'' proves that v has no root, near none of its evenly set places.
+    """Return whether a bound on v'' proves that v has no root in the step.
+
+    The proof covers the neighbourhood of each of the evenly spaced places.
 
     Parameters
     ----------
