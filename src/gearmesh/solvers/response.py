@@ -13,6 +13,7 @@ import numpy as np
 
 from gearmesh.model.contact import CONTACT_LOSS
 from gearmesh.model.problem import Problem, State
+from gearmesh.model.speeds import kept_time
 
 OK, STEP_LIMIT, DIVERGED, FRICTION_UNDEFINED = range(4)
 """Outcome of a run, as the compiled solvers return it."""
@@ -240,7 +241,7 @@ def _measure(
     samples: Any,
 ) -> None:
     """Write the quantities that are measured on the kept revolutions."""
-    duration = problem.kept_periods * problem.period
+    duration = kept_time(problem)
     response.extremum_time = extrema["time"].copy()
     response.extremum_y = extrema["y"].copy()
     response.extremum_kind = extrema["kind"].copy()
