@@ -37,3 +37,10 @@ def kept_time(problem: Problem) -> float:
     if problem.final_nu is None:
         return kept * problem.period
     return float(time_of(problem, np.array(kept), np.array(problem.periods - kept)))
+
+
+def mean_period(problem: Problem) -> float:
+    """Return the mean mesh period of the kept revolutions, in tau_s."""
+    if problem.final_nu is None or not problem.kept_periods:
+        return problem.period
+    return kept_time(problem) / problem.kept_periods
