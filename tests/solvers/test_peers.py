@@ -17,7 +17,7 @@ from gearmesh.model.variants import VARIANTS, variant
 from gearmesh.study.loading import load_study
 
 pytest.importorskip(
-    "heyoka", reason="heyoka is not installed: pip install -r requirements-bench.in"
+    "heyoka", reason="heyoka is not installed: its wheels are for Linux only"
 )
 
 from benchmarks.outcome import deviation
