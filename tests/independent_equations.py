@@ -42,7 +42,40 @@ class Body:
         self.damping = [
             2.0 * d * sqrt(c * self.mass) for d, c in zip(ratios, self.stiffness, strict=True)
         ]
-        self.omega = problem.nu / self.teeth
+        self.problem = problem
+
+    def turned(self, t: float) -> float:
+        """Return the mean angle omega_i t."""
+        return turned(self.problem, t) / self.teeth
+
+    def omega(self, t: float) -> float:
+        return speed(self.problem, t) / self.teeth
+
+
+def _acceleration(problem: Problem) -> float:
+    """Return what nu gains in a unit of time if it changes linearly over the run."""
+    periods = problem.revolutions * problem.teeth
+    mean = 0.5 * (problem.nu + problem.final_nu)
+    return (problem.final_nu - problem.nu) / (2.0 * pi * periods / mean)
+
+
+def speed(problem: Problem, t: float) -> float:
+    """Return nu at the time t, which is `start_time` at the start."""
+    if problem.final_nu is None:
+        return problem.nu
+    return problem.nu + _acceleration(problem) * (t - problem.start_time)
+
+
+def turned(problem: Problem, t: float) -> float:
+    """Return the angle of the mesh, nu t if the speed is constant."""
+    if problem.final_nu is None:
+        return problem.nu * t
+    return problem.nu * t + 0.5 * _acceleration(problem) * (t - problem.start_time) ** 2
+
+
+def phase_at(problem: Problem, t: float) -> float:
+    """Return the mesh periods that have passed since t = 0."""
+    return turned(problem, t) / (2.0 * pi)
 
 
 def kept(function):
@@ -73,12 +106,12 @@ def series_of(harmonics, angle: float) -> float:
 
 def backlash(problem: Problem, t: float, x) -> float:
     """Return s(t), with 2 sin(alpha) of what the distance of the centres grows by, where asked."""
-    s = problem.backlash + series_of(problem.terms.backlash_harmonics, problem.nu * t)
+    s = problem.backlash + series_of(problem.terms.backlash_harmonics, turned(problem, t))
     if not problem.terms.backlash_follows_centres:
         return s
     third, second = bodies(problem)
-    turned_3 = third.omega * t + x[PHI_3] / third.radius
-    turned_2 = problem.eccentricity_angle - second.omega * t - x[PHI_2] / second.radius
+    turned_3 = third.turned(t) + x[PHI_3] / third.radius
+    turned_2 = problem.eccentricity_angle - second.turned(t) - x[PHI_2] / second.radius
     e_3, e_2 = problem.eccentricity_3, problem.eccentricity_2
     along = x[Y_2] + e_2 * sin(turned_2) - x[Y_3] - e_3 * sin(turned_3)
     across = x[Z_2] + e_2 * cos(turned_2) - x[Z_3] - e_3 * cos(turned_3)
@@ -90,27 +123,27 @@ def relative_motion(problem: Problem, t: float, x) -> tuple[float, float]:
     """Return y of eq. (3) and its rate in the state `x`, shape (12,)."""
     e_3, e_2 = problem.eccentricity_3, problem.eccentricity_2
     third, second = bodies(problem)
-    total_3 = third.omega * t + x[PHI_3] / third.radius
-    behind = problem.eccentricity_angle - second.omega * t - x[PHI_2] / second.radius
-    speed_3 = third.omega + x[6 + PHI_3] / third.radius
-    speed_2 = second.omega + x[6 + PHI_2] / second.radius
+    total_3 = third.turned(t) + x[PHI_3] / third.radius
+    behind = problem.eccentricity_angle - second.turned(t) - x[PHI_2] / second.radius
+    speed_3 = third.omega(t) + x[6 + PHI_3] / third.radius
+    speed_2 = second.omega(t) + x[6 + PHI_2] / second.radius
     y = x[PHI_3] + x[PHI_2] + x[Y_3] - x[Y_2] + e_3 * sin(total_3) - e_2 * sin(behind)
     rate = x[6 + PHI_3] + x[6 + PHI_2] + x[6 + Y_3] - x[6 + Y_2]
     rate += e_3 * speed_3 * cos(total_3) + e_2 * speed_2 * cos(behind)
     for n, (a, b) in enumerate(problem.deviation, start=1):
-        angle = n * problem.nu * t
+        angle = n * turned(problem, t)
         y += a * cos(angle) + b * sin(angle)
-        rate += n * problem.nu * (b * cos(angle) - a * sin(angle))
+        rate += n * speed(problem, t) * (b * cos(angle) - a * sin(angle))
     return y, rate
 
 
 def bracket(problem: Problem, t: float, x) -> float:
     """Return e_3 Phi_3' sin Phi_3 - e_2 Phi_2' sin(Delta - Phi_2) of eq. (6)."""
     third, second = bodies(problem)
-    turned_3 = third.omega * t + x[PHI_3] / third.radius
-    turned_2 = second.omega * t + x[PHI_2] / second.radius
-    one = problem.eccentricity_3 * (third.omega + x[6 + PHI_3] / third.radius) * sin(turned_3)
-    two = problem.eccentricity_2 * (second.omega + x[6 + PHI_2] / second.radius)
+    turned_3 = third.turned(t) + x[PHI_3] / third.radius
+    turned_2 = second.turned(t) + x[PHI_2] / second.radius
+    one = problem.eccentricity_3 * (third.omega(t) + x[6 + PHI_3] / third.radius) * sin(turned_3)
+    two = problem.eccentricity_2 * (second.omega(t) + x[6 + PHI_2] / second.radius)
     return one - two * sin(problem.eccentricity_angle - turned_2)
 
 
@@ -168,7 +201,7 @@ def distance(problem: Problem, t: float, p: int) -> float:
     apart = 0.0
     for errors in (terms.pitch_errors_3, terms.pitch_errors_2):
         apart -= errors[p % len(errors)] if errors else 0.0
-    from_entry = t / problem.period - (p + 0.5 - 0.5 * length)
+    from_entry = phase_at(problem, t) - (p + 0.5 - 0.5 * length)
     for i, from_tip in enumerate((length - from_entry, from_entry)):
         if terms.tip_relief[i]:
             apart += terms.tip_relief[i] * max(0.0, 1.0 - from_tip / terms.tip_relief_length[i])
@@ -183,7 +216,7 @@ def stiffness_of_pairs(problem: Problem, t: float, inside: float) -> dict[int, f
     """Return C / C_s of each pair: its own, or an equal share of eq. (4), cut or as its sum."""
     terms, length = problem.terms, problem.contact_ratio
     touching = pairs(problem, inside)
-    phase = t / problem.period
+    phase = phase_at(problem, t)
     phase -= round(phase - inside)
     if terms.tooth_pair_stiffness:
         values = terms.tooth_pair_stiffness
@@ -208,9 +241,9 @@ def stiffness_of_pairs(problem: Problem, t: float, inside: float) -> dict[int, f
         if not problem.stiffness_harmonics and not terms.stiffness_fourier:
             c = high if len(touching) == 2 else low
         for n in range(1, problem.stiffness_harmonics + 1):
-            c += 2.0 * (high - low) * sin(n * pi * share) / (n * pi) * cos(n * problem.nu * t)
+            c += 2.0 * (high - low) * sin(n * pi * share) / (n * pi) * cos(n * turned(problem, t))
         for n, (a, b) in enumerate(terms.stiffness_fourier, start=1):
-            c += a * cos(n * problem.nu * t) + b * sin(n * problem.nu * t)
+            c += a * cos(n * turned(problem, t)) + b * sin(n * turned(problem, t))
     return {p: c * tooth_factor(problem, p) / len(touching) for _, _, p in touching}
 
 
@@ -270,7 +303,7 @@ def rates(problem: Problem, t: float, x, mode: Mode) -> list[float]:
         normal = force + _damping(problem, t, v, mode)
     signs = mode.run_out_sign * mode.slip_sign
     third, second = bodies(problem)
-    moved = t / problem.period - mode.inside
+    moved = phase_at(problem, t) - mode.inside
     moved -= round(moved)
     f_t = moment_3 = moment_2 = 0.0
     touching = pairs(problem, mode.inside)
@@ -283,13 +316,13 @@ def rates(problem: Problem, t: float, x, mode: Mode) -> list[float]:
         moment_3 -= (middle + shift / third.teeth) * pair
         moment_2 -= (middle - shift / second.teeth) * pair
     lever_3 = 1.0 + problem.eccentricity_3 / third.radius * cos(
-        third.omega * t + x[PHI_3] / third.radius
+        third.turned(t) + x[PHI_3] / third.radius
     )
-    behind = problem.eccentricity_angle - second.omega * t - x[PHI_2] / second.radius
+    behind = problem.eccentricity_angle - second.turned(t) - x[PHI_2] / second.radius
     lever_2 = 1.0 + problem.eccentricity_2 / second.radius * cos(behind)
     terms = problem.terms
-    load_3 = 1.0 + series_of(terms.torque_harmonics_3, problem.nu * t)
-    load_2 = 1.0 + series_of(terms.torque_harmonics_2, problem.nu * t)
+    load_3 = 1.0 + series_of(terms.torque_harmonics_3, turned(problem, t))
+    load_2 = 1.0 + series_of(terms.torque_harmonics_2, turned(problem, t))
     load_3 -= terms.torsional_damping[0] * x[6 + PHI_3]
     load_2 -= terms.torsional_damping[1] * x[6 + PHI_2]
     supports = [bearing(problem, i, x) if i > 1 else 0.0 for i in range(6)]

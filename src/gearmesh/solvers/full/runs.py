@@ -17,6 +17,7 @@ from gearmesh.model.contact import CONTACT_LOSS, dynamic_force
 from gearmesh.model.motion import ROTATION_2, ROTATION_3, Y_2, Y_3, start
 from gearmesh.model.problem import Branches, Problem, State
 from gearmesh.model.segments import segments
+from gearmesh.model.speeds import time_of
 from gearmesh.solvers import limits
 from gearmesh.solvers.compilation import persistent
 from gearmesh.solvers.full import kernel
@@ -280,7 +281,9 @@ def suitable_order(tolerance: float) -> int:
 def _case(problem: Problem, tolerance: float, order: int, coordinates: int) -> np.ndarray:
     case = np.zeros(1, CASE)
     # Numbers that have the same name and meaning in both.
-    for name in ("period", "initial_phase", "backlash", "start_period", "periods"):
+    for name in ("nu", "acceleration", "period", "initial_phase", "backlash"):
+        case[name] = getattr(problem, name)
+    for name in ("start_period", "periods"):
         case[name] = getattr(problem, name)
     case["varying_backlash"] = problem.terms.backlash_varies
     case["non_adhesive"] = problem.terms.non_adhesive
@@ -304,13 +307,21 @@ def _case(problem: Problem, tolerance: float, order: int, coordinates: int) -> n
 
 
 def _segments(problem: Problem, share: float = 1.0) -> np.ndarray:
-    """Return the segments in the first `share` of a mesh period, in the form the kernel takes."""
-    parts = [
-        (min(part.end, share) * problem.period, part.gamma, len(part.pairs))
-        for part in segments(problem)
-        if part.start < share
-    ]
-    return np.array(parts, SEGMENT)
+    """Return the segments in the first `share` of a mesh period, in the form the kernel takes.
+
+    They have one row, or one for each mesh period if the speed changes.
+    """
+    parts = [part for part in segments(problem) if part.start < share]
+    found = np.zeros((1 if problem.final_nu is None else problem.periods, len(parts)), SEGMENT)
+    ends = np.array([min(part.end, share) for part in parts])
+    found["gamma"] = [part.gamma for part in parts]
+    found["pairs"] = [len(part.pairs) for part in parts]
+    if problem.final_nu is None:
+        found["end"] = ends * problem.period
+        return found
+    begins = np.arange(problem.periods)[:, None]
+    found["end"] = time_of(problem, ends, before=begins)
+    return found
 
 
 def _samples(rows: np.ndarray, extremes: np.ndarray) -> Samples:
