@@ -16,6 +16,7 @@ from gearmesh.solvers.full.recurrences import (
     SAMPLED,
     carry_out,
 )
+from gearmesh.solvers.full.speeds import write_phase
 from gearmesh.solvers.full.tape import (
     BRACKET,
     CONSTANT,
@@ -29,7 +30,6 @@ from gearmesh.solvers.full.tape import (
     V,
     Y,
 )
-from gearmesh.solvers.full.speeds import write_phase
 from gearmesh.solvers.lanes.rows import pointer_to
 
 CASE = np.dtype(
