@@ -10,9 +10,10 @@ from project import Project
 from gearmesh.data import paths
 from gearmesh.data.paths import Places
 from gearmesh.dynamics.response_curves import WIDTH
-from gearmesh.identification import design, layout, store, survey, table
-from gearmesh.identification.curves import ACCURACY, SampledCurve, scan_all
+from gearmesh.identification import layout, table
 from gearmesh.identification.factors import KINDS
+from gearmesh.identification.sampling import design, store, survey
+from gearmesh.identification.sampling.curves import ACCURACY, SampledCurve, scan_all
 from gearmesh.identification.settings import load_settings
 from gearmesh.model.variants import variant
 from gearmesh.reproduction import thresholds

@@ -33,8 +33,8 @@ _FINAL_STATE = "final_state"
 def run_dataset(response: Response, pair: Pair, case: Case) -> xr.Dataset:
     """Return one run as a dataset, with the variables and attributes of its case file.
 
-    The samples have the dimension and coordinate ``time``, so ``ds.y.plot()`` works. If the speed
-    changes, it is a coordinate too: ``ds.period_y_max.plot(x="period_nu")``.
+    The samples have the dimension and coordinate ``time``, so ``ds.y.plot()`` works. A speed
+    that changes is a coordinate too: ``ds.period_y_max.plot(x="period_nu")``.
     """
     columns = record(response, pair, pair.problem(case.variant, case.nu))
     stated = attributes(pair, case) | {_FINAL_STATE: _written(response.final_state)}

@@ -5,8 +5,8 @@ torque that accelerates the wheels does not move the mesh: in R_b3 phi_3 + R_b2 
 rotations cancel.
 
 With theta'' = a, nu^2 grows linearly with the angle theta: after n mesh periods it is
-nu^2 + 4 pi a n. Jumps of the laws are at given angles, so their times have a closed form. The forms
-below lose no digits where a is small.
+nu^2 + 4 pi a n. So every jump of the laws, which is at a given angle, has a time in closed form.
+The forms below lose no digits where a is small.
 """
 
 import numpy as np

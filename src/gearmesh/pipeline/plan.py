@@ -21,7 +21,7 @@ from gearmesh.data import casefile, manifest, paths, provenance
 from gearmesh.data.paths import Places
 from gearmesh.errors import InputError
 from gearmesh.identification import layout
-from gearmesh.identification.design import left_alone, stated
+from gearmesh.identification.sampling.design import left_alone, stated
 from gearmesh.identification.settings import Settings, load_settings
 from gearmesh.pipeline import locks
 from gearmesh.pipeline.inputs import RULES, inputs

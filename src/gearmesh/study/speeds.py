@@ -37,7 +37,7 @@ def as_nu(value: object, pair: Pair) -> object:
 
 
 def check_constant_speed(pair: Pair, wanted: str) -> None:
-    """Raise InputError if the speed of a pair changes during a run; `wanted` has one speed."""
+    """Raise InputError if the speed of a pair changes, where `wanted` has one speed."""
     if pair.final_nu is not None:
         raise InputError(
             f"final_nu: found {pair.final_nu:g}; {wanted} has a constant speed, so it must be open"
