@@ -313,8 +313,7 @@ def run(
     ----------
     cases : ndarray of `CASE`, shape (1,)
     segments : ndarray of `SEGMENT`, shape (1 or periods, segments)
-        Segments of a mesh period, in their order; of each one if the speed changes. The last one
-        ends with the period.
+        Segments of a mesh period, of each one if the speed changes. The last ends with the period.
     variants : ndarray of int, shape (periods + 1,)
         The kind of each period. Periods differ if single teeth have factors.
     tape : tuple of ndarray
