@@ -149,8 +149,8 @@ def _special(pieces: list[Piece]) -> list[tuple[str, Point]]:
     return [
         found
         for piece in pieces
-        for i in suspects(piece.points)
-        for found in special_points(piece.curve, piece.points[i], piece.points[i + 1])
+        for i, kinds in suspects(piece.points)
+        for found in special_points(piece.curve, piece.points[i], piece.points[i + 1], kinds)
     ]
 
 
