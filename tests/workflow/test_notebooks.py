@@ -6,7 +6,6 @@ import json
 import matplotlib as mpl
 import nbformat
 import pytest
-
 from matplotlib.image import imread
 
 from gearmesh.data import paths
