@@ -65,10 +65,13 @@ def _line(name: str, row: "Row", base: Path, here: Path) -> str:
 
 
 def _why(error: Exception) -> str:
-    """Return why a row was not measured, in one line: the last that its command printed."""
-    printed = getattr(error, "stdout", None) or b""
-    said = printed.decode(errors="replace").strip().splitlines()[-1:]
-    return ": ".join([*str(error).splitlines()[-1:], *said])
+    """Return why a row was not measured, in one line."""
+    if isinstance(error, subprocess.CalledProcessError):
+        last = error.stdout.decode(errors="replace").strip().splitlines()[-1:]
+        return f"a command ended with status {error.returncode}: {''.join(last)}"
+    if isinstance(error, subprocess.TimeoutExpired):
+        return f"a command took more than {PATIENCE} s"
+    return str(error)
 
 
 def against_heyoka(results: dict) -> str:
@@ -187,8 +190,10 @@ def _neither(folder: Path) -> float:
     known = sum(jobs[name] for name in processes.NOTEBOOKS + processes.INTEGRATING)
     command = (_python(folder), "-c", processes.INTEGRATION)
     environment = os.environ | {"PYTHONPATH": str(folder / "src")}
-    cases = subprocess.check_output(command, cwd=folder, env=environment, timeout=PATIENCE)
-    return 1 - (known + float(cases)) / whole
+    cases = subprocess.check_output(
+        command, cwd=folder, env=environment, timeout=PATIENCE, stderr=subprocess.STDOUT
+    )
+    return 1 - (known + float(cases.split()[-1])) / whole
 
 
 def _idle(folder: Path) -> float:
