@@ -127,8 +127,9 @@ def _pair_products(jacobians: np.ndarray) -> np.ndarray:
 
     The sums mu_1 mu_2 + mu_3 mu_4, ... are the roots of the resolvent cubic of the polynomial.
     """
-    powers = [jacobians, *(np.linalg.matrix_power(jacobians, k) for k in (2, 3))]
-    one, two, three = (np.trace(power, axis1=1, axis2=2) for power in powers)
+    square = jacobians @ jacobians
+    one, two = (np.einsum("kii->k", power) for power in (jacobians, square))
+    three = np.einsum("kij,kji->k", square, jacobians)
     e_2 = (one**2 - two) / 2.0
     e_3 = (one**3 - 3.0 * one * two + 2.0 * three) / 6.0
     e_4 = np.linalg.det(jacobians)
