@@ -79,13 +79,17 @@ def phase_at(problem: Problem, t: float) -> float:
 
 
 def kept(function):
-    """Remember what a function of a problem returns, by the identity of the problem."""
+    """Remember what a function of a problem, and of a mesh phase, returns.
+
+    The identity of the problem is asked for, because the hash of its many fields takes long.
+    """
     known = {}
 
-    def remembered(problem):
-        if id(problem) not in known:
-            known[id(problem)] = problem, function(problem)
-        return known[id(problem)][1]
+    def remembered(problem, *inside):
+        key = id(problem), *inside
+        if key not in known:
+            known[key] = problem, function(problem, *inside)
+        return known[key][1]
 
     return remembered
 
@@ -161,6 +165,7 @@ def pitch_point(problem: Problem) -> float:
     return problem.contact_ratio * before / (before + behind)
 
 
+@kept
 def pairs(problem: Problem, inside: float) -> list[tuple[float, float, int]]:
     """Return gamma, the distance behind the pitch point in base pitches, and number of each pair.
 
@@ -183,6 +188,7 @@ def tooth_factor(problem: Problem, p: int) -> float:
     return product
 
 
+@kept
 def deviates(problem: Problem) -> bool:
     """Return whether flanks have pitch errors or tip relief."""
     terms = problem.terms
@@ -264,11 +270,15 @@ def _restoring(problem: Problem, d: float) -> float:
 def contact_force(problem: Problem, t: float, x, mode: Mode) -> float:
     """Return elastic and damping force, eqs. (1) and (7), of flanks in contact or of the film."""
     y, v = relative_motion(problem, t, x)
+    return elastic(problem, t, y, mode, x) + _damping(problem, t, v, mode)
+
+
+def _damping(problem: Problem, t: float, v: float, mode: Mode) -> float:
     k_1, k_2, k_3 = problem.lubricant if mode.regime == CONTACT_LOSS else problem.material
     damping = k_1 * v + k_2 * abs(v) * v + k_3 * v**3
     if mode.regime != CONTACT_LOSS and problem.terms.damping_power:
         damping *= stiffness(problem, t, mode.inside) ** problem.terms.damping_power
-    return elastic(problem, t, y, mode, x) + damping
+    return damping
 
 
 def bearing(problem: Problem, i: int, x) -> float:
@@ -286,9 +296,11 @@ def holding_force(problem: Problem, x) -> float:
 
 def rates(problem: Problem, t: float, x, mode: Mode) -> list[float]:
     """Return the derivative of the state, eq. (1)."""
-    y, _ = relative_motion(problem, t, x)
-    force = 0.0 if mode.parted else elastic(problem, t, y, mode, x)
-    normal = 0.0 if mode.parted else contact_force(problem, t, x, mode)
+    force = normal = 0.0
+    if not mode.parted:
+        y, v = relative_motion(problem, t, x)
+        force = elastic(problem, t, y, mode, x)
+        normal = force + _damping(problem, t, v, mode)
     signs = mode.run_out_sign * mode.slip_sign
     third, second = bodies(problem)
     moved = phase_at(problem, t) - mode.inside

@@ -126,10 +126,13 @@ def small(tmp_path_factory):
     for stated in settings["designs"].values():
         stated["points"] = 2
     settings["designs"]["survey"]["points"] = 8
-    del settings["designs"]["natural_nearer"]  # no more than `nearer` shows
+    for name in ("natural_near", "natural_nearer"):  # no more than `near` and `nearer` show
+        del settings["designs"][name]
     # One design on the full model is enough, and dear enough.
     settings["designs"]["run_out_alone"]["vary"] = ["eccentricity_angle"]
     (project.folder / SETTINGS).write_text(yaml.safe_dump(settings), encoding="utf-8")
+    # Short runs, because only what becomes of them is of interest.
+    project.edit("config/tiny.yaml", "title:", "revolutions: 2\ntitle:")
     project.finished = project.run("identify")
     return project
 
