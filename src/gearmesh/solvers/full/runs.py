@@ -107,9 +107,10 @@ class Propagation:
     Parameters
     ----------
     problem : Problem
-        Its initial state and its number of revolutions are ignored.
+        Only the mesh periods since t = 0 matter of its initial state. Its number of revolutions is
+        ignored.
     periods : int
-        Number of mesh periods to integrate, from t = 0.
+        Number of mesh periods to integrate.
     tolerance : float
     share : float
         Share of each mesh period that is integrated. If `periods` is 1, the motion ends there.
@@ -126,7 +127,6 @@ class Propagation:
             teeth=1,
             revolutions=periods,
             kept_revolutions=0,
-            initial_state=None,
         )
         self._run = _Run(run, tolerance, 0, suitable_order(tolerance), share=share)
 
