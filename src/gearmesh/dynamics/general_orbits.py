@@ -118,7 +118,7 @@ class GeneralOrbit:
 
     @property
     def strobes(self) -> np.ndarray:
-        """y and y' at the initial phase of each mesh period, shape (periods, 2)."""
+        """Y and y' at the initial phase of each mesh period, shape (periods, 2)."""
         return np.column_stack([self.response.strobe_y, self.response.strobe_v])[:-1]
 
     @property

@@ -93,7 +93,7 @@ class Shot(Protocol):
 
     @property
     def strobes(self) -> np.ndarray:
-        """y and y' at the initial phase of each mesh period, shape (periods, 2)."""
+        """Y and y' at the initial phase of each mesh period, shape (periods, 2)."""
 
     @property
     def residual(self) -> float:

@@ -61,20 +61,23 @@ class GeneralMap:
 
     @property
     def weights(self) -> np.ndarray:
-        """See `PoincareMap`, here and below."""
+        """Weights of the coordinates."""
         return np.array([1.0, 1.0] + [_WEIGHT_OF_BODIES] * (len(self._to_coordinates) - 2))
 
     @property
     def duration(self) -> float:
+        """Time of one step, in tau_s."""
         return self.block * self.problem.period
 
     def start(self, problem: Problem) -> np.ndarray:
+        """Return the state at the start of a run."""
         return self._chart.unknowns(self._place(problem))
 
     def _place(self, problem: Problem) -> np.ndarray:
         return self._chart.place_of_six(np.concatenate(motion.start(problem)))
 
     def starts(self, y: np.ndarray, v: np.ndarray, phases: Sequence[float]) -> np.ndarray:
+        """Return the states to which initial conditions lead."""
         found = []
         for phase, height, rate in product(phases, y, v):
             there = replace(self.problem, initial_phase=float(phase))
@@ -85,6 +88,7 @@ class GeneralMap:
         return np.array(found)
 
     def advance(self, states: np.ndarray, steps: int) -> np.ndarray:
+        """Return states after some steps."""
         found = np.full_like(states, np.nan)
         for i, state in enumerate(states):
             try:
@@ -107,6 +111,7 @@ class GeneralMap:
         return self._chart.carried_on(shot.start, shot.end, held, self.duration)
 
     def step(self, state: np.ndarray) -> tuple[np.ndarray, list[np.ndarray]]:
+        """Return the state after a step, and factors of the Jacobian."""
         shot = shot_from(self.problem, state, self.block, self._angle)
         factors, kept = shot.factors, self._chart.kept
         factors[0] = factors[0] @ self._from_coordinates[kept]
@@ -114,9 +119,11 @@ class GeneralMap:
         return self._next(shot), factors
 
     def coordinates(self, states: np.ndarray) -> np.ndarray:
+        """Return the coordinates of states."""
         return self._places(states) @ self._to_coordinates.T
 
     def displaced(self, states: np.ndarray, away: np.ndarray) -> np.ndarray:
+        """Return displaced states."""
         places = self._places(states) + away @ self._from_coordinates.T
         return np.array(
             [
@@ -129,6 +136,7 @@ class GeneralMap:
         return np.array([self._chart.place(state, self._angle) for state in states])
 
     def orbit(self, state: np.ndarray, steps: int) -> GeneralOrbit:
+        """Return the orbit near a state."""
         periods = steps * self.block
         if steps == 1 and self._common < self.block:
             try:
@@ -142,9 +150,11 @@ class GeneralMap:
         return correct(shot_from(self.problem, state, periods, self._angle))
 
     def state_of(self, orbit: Shot) -> np.ndarray:
+        """Return the state of an orbit."""
         return self._chart.rescaled(orbit.state, orbit.periods, self.block)
 
     def runs(self, states: np.ndarray, periods: int) -> list[Problem]:
+        """Return runs from states."""
         return [
             replace(
                 with_moments(self.problem, self._chart.moments(self.problem, state, self.block)),

@@ -85,6 +85,8 @@ class PoincareMap(Protocol):
 class ReducedMap:
     """The map of the reduced system over a mesh period: y, y', b, b' and exact Jacobians.
 
+    See `PoincareMap` for the methods.
+
     Parameters
     ----------
     problems : sequence of Problem
@@ -104,39 +106,47 @@ class ReducedMap:
 
     @property
     def duration(self) -> np.ndarray:
-        """Of each problem."""
+        """Time of one step, in tau_s."""
         return self._laws["period"]
 
     def start(self, problem: Problem) -> np.ndarray:
-        """See `PoincareMap`, here and below."""
+        """Return the state at the start of a run."""
         return initial_coordinates(problem)
 
     def starts(self, y: np.ndarray, v: np.ndarray, phases: Sequence[float]) -> np.ndarray:
+        """Return the states to which initial conditions lead."""
         begun = np.tile(initial_states(self.problem, y, v), (len(phases), 1))
         return advance_to_phase(self.problem, np.repeat(phases, len(y) * len(v)), begun)
 
     def advance(self, states: np.ndarray, steps: int) -> np.ndarray:
+        """Return states after some steps."""
         return advance(self._laws, states, steps)
 
     def step(self, state: np.ndarray) -> tuple[np.ndarray, list[np.ndarray]]:
+        """Return the state after a step, and factors of the Jacobian."""
         moved = passage(self.problem, state)
         if moved.status != "complete":
             raise NoOrbit(f"the motion ends with {moved.status}")
         return moved.end, [moved.jacobian]
 
     def coordinates(self, states: np.ndarray) -> np.ndarray:
+        """Return the coordinates of states."""
         return states
 
     def displaced(self, states: np.ndarray, away: np.ndarray) -> np.ndarray:
+        """Return displaced states."""
         return states + away
 
     def orbit(self, state: np.ndarray, steps: int) -> Orbit:
+        """Return the orbit near a state."""
         return correct(self.problem, state, steps)
 
     def state_of(self, orbit: Shot) -> np.ndarray:
+        """Return the state of an orbit."""
         return orbit.state
 
     def runs(self, states: np.ndarray, periods: int) -> list[Problem]:
+        """Return runs from states."""
         several = self.problems if len(self.problems) > 1 else self.problems * len(states)
         return [
             replace(
