@@ -10,7 +10,7 @@ a grazing, or where friction begins to stick, steps are smaller and the rounding
 import math
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
-from functools import cached_property
+from functools import cached_property, partial
 from itertools import chain, pairwise
 
 import numpy as np
@@ -25,7 +25,6 @@ from gearmesh.dynamics.charts import (
 from gearmesh.dynamics.orbits import TimeCourse, sorted_multipliers
 from gearmesh.errors import NoOrbit
 from gearmesh.model.contact import regime_of
-from gearmesh.model.motion import state_at
 from gearmesh.model.problem import Problem, State
 from gearmesh.solvers.full.runs import Propagation, integrate
 from gearmesh.solvers.reduced.variational import EVENT_SIZE
@@ -215,9 +214,9 @@ class GeneralOrbit:
 
         The first and the last one are without the mean rotation at the start and at the end.
         """
-        found, place = [], self.start
+        found, place, motions = [], self.start, ends(self.held, self.periods)
         for n in range(self.periods):
-            end = ends(after(self.held, n), 1)
+            end = partial(motions, first=n, last=n + 1)
             found.append(np.array([_slope(end, place, one) for one in np.eye(place.size)]).T)
             place = end(place)
         kept = self.chart.kept
@@ -354,15 +353,12 @@ def shot_from(problem: Problem, state: np.ndarray, periods: int, angle: float) -
 
 
 def ends(problem: Problem, periods: int, share: float = 1.0) -> Callable[..., np.ndarray]:
-    """Return a function that maps the place where a motion starts to the place where it ends."""
+    """Return a function that maps the place where a motion starts to the place where it ends.
+
+    Its further arguments are those of `Propagation.end`.
+    """
     chart, motions = chart_of(problem), Propagation(problem, periods, _TOLERANCE, share)
-    return lambda place: chart.place_of_six(motions.end(chart.six(place)))
-
-
-def after(problem: Problem, periods: int) -> Problem:
-    """Return a problem whose runs begin some mesh periods after t = 0."""
-    bare = replace(problem, initial_state=None)
-    return replace(bare, initial_state=replace(state_at(bare), periods=periods))
+    return lambda place, **part: chart.place_of_six(motions.end(chart.six(place), **part))
 
 
 def moved_to_phase(problem: Problem, place: np.ndarray, phase: float) -> np.ndarray:
@@ -370,9 +366,9 @@ def moved_to_phase(problem: Problem, place: np.ndarray, phase: float) -> np.ndar
     share = (phase - problem.initial_phase) % 1.0
     if share > 0.0:
         place = ends(problem, 1, share)(place)
-    others = common_period(problem) - 1
-    if phase < problem.initial_phase and others:
-        place = ends(after(replace(problem, initial_phase=phase), 1), others)(place)
+    common = common_period(problem)
+    if phase < problem.initial_phase and common > 1:
+        place = ends(replace(problem, initial_phase=phase), common)(place, first=1)
     return place
 
 

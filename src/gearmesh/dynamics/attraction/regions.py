@@ -24,7 +24,7 @@ _DIRECTIONS = 64  # motions that try a size, from each point of the orbit,
 _FEWEST = 16  # or fewer where a step of the map takes several mesh periods
 _FALL = 0.7  # of the size, in the time over which it is tried
 _MOST_PERIODS = 2000
-_LEAST_RHO = 1e-100
+_LEAST_RHO = 0.1
 
 
 @dataclass(frozen=True)

@@ -107,10 +107,9 @@ class Propagation:
     Parameters
     ----------
     problem : Problem
-        Only the mesh periods since t = 0 matter of its initial state. Its number of revolutions is
-        ignored.
+        Its initial state and its number of revolutions are ignored.
     periods : int
-        Number of mesh periods to integrate.
+        Number of mesh periods to integrate, from t = 0.
     tolerance : float
     share : float
         Share of each mesh period that is integrated. If `periods` is 1, the motion ends there.
@@ -127,16 +126,20 @@ class Propagation:
             teeth=1,
             revolutions=periods,
             kept_revolutions=0,
+            initial_state=None,
         )
         self._run = _Run(run, tolerance, 0, suitable_order(tolerance), share=share)
 
-    def end(self, six: np.ndarray) -> np.ndarray:
+    def end(self, six: np.ndarray, first: int = 0, last: int | None = None) -> np.ndarray:
         """Return the coordinates and rates at the end of the motion, shape (12,).
 
         Parameters
         ----------
         six : ndarray, shape (12,)
             The six coordinates at the start, then their rates.
+        first, last : int
+            The motion starts after `first` of the mesh periods and ends after `last`; by default
+            after all.
 
         Raises
         ------
@@ -144,6 +147,7 @@ class Propagation:
             If it cannot be integrated.
         """
         self._run.start = six
+        self._run.part = first, self._run.problem.periods if last is None else last
         self._run.integrate(0, 0)
         if self._run.summary["status"] != OK:
             status = STATUSES[self._run.summary["status"]]
@@ -155,7 +159,7 @@ class _Run:
     """A run from its start to its end.
 
     `displacement` displaces wheel 3 at the start. Each mesh period is cut off after a `share` of
-    it. If there is no room for all extrema of the run, it is integrated again with enough room.
+    it. `part` says which mesh periods are integrated: by default all. If there is no room for all extrema of the run, it is integrated again with enough room.
     """
 
     def __init__(
@@ -181,6 +185,7 @@ class _Run:
         self.extrema = np.zeros(0, EXTREMUM)
         self.start = np.concatenate(start(problem))
         self.start[ROTATION_3] += displacement
+        self.part = 0, problem.periods
         self.integrate(samples_per_period, _EXTREMA_PER_PERIOD * problem.kept_periods)
         found = self.summary["extrema"]
         if found > self.extrema.size:
@@ -195,6 +200,7 @@ class _Run:
         self.summary = summaries[0]
         self.state = projected(self.start, self.embedding)
         self.mode = _mode(self.problem)
+        self.mode["period"], self._arguments[0]["periods"] = self.part
         self.strobes = np.zeros((self.problem.periods + 1, 2))
         self.extrema = np.zeros(room, EXTREMUM)
         self.samples = np.zeros(samples_per_period * self.problem.kept_periods, SAMPLE)
