@@ -21,7 +21,7 @@ SERVER = multiprocessing.get_context("forkserver")
 SERVER.set_forkserver_preload(
     [
         *("snakemake.cli", "snakemake.report.html_reporter", "snakemake.storage"),
-        *("docutils.core", "jinja2", "pydantic", "requests", "scipy.io", "yte"),
+        *("docutils.core", "jinja2", "pydantic", "requests", "scipy.io", "smart_open", "yte"),
     ]
 )
 PATIENCE = 280

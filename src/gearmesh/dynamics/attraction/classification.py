@@ -46,10 +46,13 @@ class LongRun(NamedTuple):
     settled : int or None
         Mesh periods from the start until the stroboscopic point (y, y') stays within `SETTLED` of
         the orbit, or until contact is certain not to be lost again. None if it does not settle.
+    orbit : Orbit or None
+        The stable orbit on which the run is, or which it approaches.
     """
 
     attractor: Attractor
     settled: int | None
+    orbit: Orbit | None = None
 
 
 @dataclass(slots=True)
@@ -134,11 +137,11 @@ def _ending(run: _Run, end: np.ndarray, last: bool) -> LongRun | None:
         away = np.abs((points - end) * WEIGHTS).max(axis=1)
         if away.min() < SETTLED:
             attractor = Attractor.of(orbit)
-            return LongRun(attractor, _settled(strobes, points, int(away.argmin())))
+            return LongRun(attractor, _settled(strobes, points, int(away.argmin())), orbit)
         if last and away.min() < _NEAR:
             slow = Attractor.of(orbit)
             moving = Attractor(MOVING, exponent=slow.exponent, time_constant=slow.time_constant)
-            return LongRun(moving, None)
+            return LongRun(moving, None, orbit)
     return None
 
 
