@@ -128,8 +128,7 @@ def small(tmp_path_factory):
     settings["designs"]["survey"]["points"] = 8
     for name in ("natural_near", "natural_nearer"):  # no more than `near` and `nearer` show
         del settings["designs"][name]
-    # One sample on the full model is enough, and dear enough.
-    settings["designs"]["run_out"]["points"] = 1
+    # One design on the full model is enough, and dear enough.
     settings["designs"]["run_out_alone"]["vary"] = ["eccentricity_angle"]
     (project.folder / SETTINGS).write_text(yaml.safe_dump(settings), encoding="utf-8")
     # Short runs, because only what becomes of them is of interest.

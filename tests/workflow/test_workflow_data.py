@@ -55,16 +55,9 @@ def alter_secretly(path: Path) -> None:
 
 
 HARMS = (
-    {
-        CASE: (Path.unlink, "missing"),
-        CONSERVATIVE: (cut_short, "damaged"),
-        DATASET: (alter_secretly, "damaged"),
-    },
-    {
-        CONSERVATIVE: (alter_secretly, "damaged"),
-        "batches/c.nc": (alter_secretly, "damaged"),
-        DATASET: (Path.unlink, "missing"),
-    },
+    {CASE: (Path.unlink, "missing"), DATASET: (alter_secretly, "damaged")},
+    {CONSERVATIVE: (alter_secretly, "damaged"), DATASET: (Path.unlink, "missing")},
+    {CONSERVATIVE: (cut_short, "damaged"), "batches/c.nc": (alter_secretly, "damaged")},
 )
 
 
