@@ -7,10 +7,14 @@ import subprocess
 import zipfile
 from pathlib import Path
 
+import numpy as np
 import pytest
 import xarray as xr
 import yaml
+from orbits_in_tables import distance
 from project import Project
+
+from gearmesh.dynamics.attraction.classification import classify
 
 FIGURES = [f"fig{number}" for number in range(2, 8)]
 LETTERS = "abcdefgh"
@@ -60,6 +64,17 @@ def test_what_lies_behind_the_curves_is_there_and_explains_claims(smoke):
     assert "0.638630" in mechanisms["F3.2"]
     branches = xr.open_dataset(smoke.study / "datasets/branches.nc")
     assert set(branches["variant"].values) == {"c-material", "c-lubricant"}
+
+
+def test_every_orbit_on_which_a_case_ends_lies_on_a_branch(smoke, small_study):
+    branches = xr.open_dataset(smoke.study / "datasets/branches.nc")
+    for name in small_study.plan.mechanisms.variants:
+        own = branches.isel(point=np.flatnonzero(branches["variant"] == name))
+        cases = [case for case in small_study.cases if case.variant.name == name]
+        runs = classify([small_study.pair.problem(case.variant, case.nu) for case in cases])
+        orbits = [run.orbit for run in runs if run.orbit]
+        assert len(orbits) > len(cases) / 2
+        assert max(distance(own, orbit) for orbit in orbits) < 5e-3
 
 
 def test_a_run_leaves_nothing_temporary(smoke):

@@ -14,6 +14,8 @@ from gearmesh.errors import NoOrbit
 from gearmesh.model.problem import Problem
 
 _AMPLITUDE = 1e-3  # of the first orbit after a flip
+_SAME_VALUE = 1e-9  # distance in the parameter of special points that are the same
+_SAME_HEIGHT = 1e-6  # their distance in y_max
 
 
 @dataclass(frozen=True)
@@ -51,12 +53,12 @@ class Branch:
         """The orbits at these values."""
         return [point.orbit.at_phase(self.phase) for point in self.points]
 
-    @property
+    @cached_property
     def y_max(self) -> np.ndarray:
         """Greatest y of each orbit."""
         return np.array([point.orbit.y_max for point in self.points])
 
-    @property
+    @cached_property
     def y_min(self) -> np.ndarray:
         """Least y of each orbit."""
         return np.array([point.orbit.y_min for point in self.points])
@@ -87,10 +89,12 @@ def follow(
 ) -> Branch:
     """Follow an orbit in one parameter, in both directions.
 
+    The branch begins at the end with the lower value of the parameter.
+
     Parameters
     ----------
     orbit : Shot
-        Where to begin.
+        Where to start.
     parameter : str
         A field of `Problem`, or a name of what `family` varies.
     limits : tuple of float
@@ -123,7 +127,9 @@ def follow(
         stretches=stretches(family, value),
     )
     start = curve.at(moved, (value,))
-    back, ahead = walk(curve, start, (limits,), longest_step)
+    walks = walk(curve, start, (limits,), longest_step)
+    # Near a branching the slope may be rounding, so the ends tell where the branch begins.
+    back, ahead = sorted(walks, key=lambda one: one.pieces[-1].points[-1].values)
     pieces = joined(back, ahead)
     special = [
         SpecialPoint(kind, found.problem.nu, {parameter: point.values[0]}, found)
@@ -134,7 +140,7 @@ def follow(
         parameter,
         points_of(pieces),
         phase,
-        special,
+        _each_once(special) if back is ahead else special,
         (back.reason, ahead.reason),
     )
 
@@ -149,9 +155,25 @@ def _special(pieces: list[Piece]) -> list[tuple[str, Point]]:
     return [
         found
         for piece in pieces
-        for i in suspects(piece.points)
-        for found in special_points(piece.curve, piece.points[i], piece.points[i + 1])
+        for i, kinds in suspects(piece.points)
+        for found in special_points(piece.curve, piece.points[i], piece.points[i + 1], kinds)
     ]
+
+
+def _each_once(special: list[SpecialPoint]) -> list[SpecialPoint]:
+    """Leave out the special points that a closed branch passes again behind its first point."""
+    kept: list[SpecialPoint] = []
+    for point in special:
+        (value,) = point.parameters.values()
+        again = any(
+            one.kind == point.kind
+            and abs(value - other) < _SAME_VALUE
+            and abs(one.orbit.y_max - point.orbit.y_max) < _SAME_HEIGHT
+            for one in kept
+            for other in one.parameters.values()
+        )
+        kept += [] if again else [point]
+    return kept
 
 
 def double_period(point: SpecialPoint, family: Family | None = None) -> Shot:

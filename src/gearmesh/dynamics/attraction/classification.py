@@ -12,17 +12,16 @@ from gearmesh.dynamics.attraction.attractors import (
     MOVING,
     NEUTRAL,
     SAME,
-    WEIGHTS,
     Attractor,
 )
 from gearmesh.dynamics.attraction.envelopes import RISE, Envelope, envelope_of
 from gearmesh.dynamics.attraction.irregular import irregular_kinds
+from gearmesh.dynamics.attraction.maps import WEIGHTS, ReducedMap
 from gearmesh.dynamics.orbits import Orbit, correct
 from gearmesh.dynamics.starts import initial_coordinates
 from gearmesh.errors import NoOrbit
 from gearmesh.model.problem import Problem
 from gearmesh.solvers.reduced.ensembles import advance, laws_of, trace
-from gearmesh.solvers.reduced.period_map import passage
 
 CHECKED_AFTER = (105, 210, 420, 840, 1260)
 """Mesh periods after which motions are compared with orbits."""
@@ -47,10 +46,13 @@ class LongRun(NamedTuple):
     settled : int or None
         Mesh periods from the start until the stroboscopic point (y, y') stays within `SETTLED` of
         the orbit, or until contact is certain not to be lost again. None if it does not settle.
+    orbit : Orbit or None
+        The stable orbit on which the run is, or which it approaches.
     """
 
     attractor: Attractor
     settled: int | None
+    orbit: Orbit | None = None
 
 
 @dataclass(slots=True)
@@ -110,7 +112,7 @@ def _classify(problems: Sequence[Problem]) -> list[LongRun]:
         if not open_:
             break
     if open_:
-        kinds, rates = irregular_kinds([problems[i] for i in open_], laws[open_], states[open_])
+        kinds, rates = irregular_kinds(ReducedMap([problems[i] for i in open_]), states[open_])
         for i, kind, rate in zip(open_, kinds, rates.tolist(), strict=True):
             found[i] = LongRun(Attractor(kind, exponent=rate), 0 if kind == NEUTRAL else None)
     return [found[i] for i in range(len(runs))]
@@ -131,15 +133,15 @@ def _ending(run: _Run, end: np.ndarray, last: bool) -> LongRun | None:
             return LongRun(Attractor(MOVING, exponent=rate, time_constant=constant), None)
     strobes = np.concatenate(run.strobes)
     for orbit in _candidates(run, strobes, end):
-        points = _points(orbit)
+        points = orbit.points
         away = np.abs((points - end) * WEIGHTS).max(axis=1)
         if away.min() < SETTLED:
             attractor = Attractor.of(orbit)
-            return LongRun(attractor, _settled(strobes, points, int(away.argmin())))
+            return LongRun(attractor, _settled(strobes, points, int(away.argmin())), orbit)
         if last and away.min() < _NEAR:
             slow = Attractor.of(orbit)
             moving = Attractor(MOVING, exponent=slow.exponent, time_constant=slow.time_constant)
-            return LongRun(moving, None)
+            return LongRun(moving, None, orbit)
     return None
 
 
@@ -158,14 +160,6 @@ def _candidates(run: _Run, strobes: np.ndarray, end: np.ndarray) -> Iterator[Orb
     if orbit.stable:
         run.orbit = orbit
         yield orbit
-
-
-def _points(orbit: Orbit) -> np.ndarray:
-    """Return the states of an orbit in its mesh periods, shape (n, 4)."""
-    points = [orbit.state]
-    for _ in range(orbit.periods - 1):
-        points.append(passage(orbit.problem, points[-1]).end)
-    return np.array(points)
 
 
 def _settled(strobes: np.ndarray, points: np.ndarray, at_end: int) -> int:

@@ -10,26 +10,23 @@ from gearmesh.study.cases import Mechanisms, Study
 def orbits(study: Study, places: Places, letter: str) -> list[Path]:
     """Follow the orbits of the variants of one letter of Tab. 1, and locate their special points.
 
-    Those of the damped orbits of the mesh period are located a second time without friction and on
-    rigid supports.
+    All is done a second time without friction and on rigid supports, for the special points.
     """
     import json
 
     from gearmesh.data.writing import write_text
     from gearmesh.reproduction.mechanisms import files, tables
-    from gearmesh.reproduction.mechanisms.orbits import WITHOUT_SUPPORTS, branches, doubled
+    from gearmesh.reproduction.mechanisms.attractors import all_branches
+    from gearmesh.reproduction.mechanisms.orbits import WITHOUT_SUPPORTS
 
-    limits = float(study.nu[0]), float(study.nu[-1])
     names = _mechanisms(study).by_letter[letter]
+    simpler = study.pair.replace(**WITHOUT_SUPPORTS)
     made, rows = [], []
     for name in names:
-        single = branches(study.pair, name, limits)
-        found = [*single, *doubled(single, limits)]
-        rows += tables.rows(name, found, {})
+        found = all_branches(study.pair, name, study.nu)
         made += [tables.table(name, found)] if found else []
-    simpler = study.pair.replace(**WITHOUT_SUPPORTS)
-    for name in names if letter != "a" else []:
-        rows += tables.rows(name, branches(simpler, name, limits), WITHOUT_SUPPORTS)
+        rows += tables.rows(name, found, {})
+        rows += tables.rows(name, all_branches(simpler, name, study.nu), WITHOUT_SUPPORTS)
     dataset, points = places.orbits(letter)
     files.write(dataset, tables.joined(made), study, "branches of orbits")
     write_text(points, json.dumps(rows))

@@ -18,8 +18,9 @@ PALE = "#b5b5b5"
 BLUE = "#005b96"
 RED = "#d5501a"
 GREEN = "#2e7d5b"
+VIOLET = "#9a5fc0"
 """The two colours of damping differ in lightness too, for print in grey. Green is for orbits of
-twice the mesh period."""
+twice the mesh period, violet for those of three mesh periods and more."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -122,6 +122,15 @@ def _doubled(branches: xr.Dataset, points: Points) -> dict[str, float]:
     double = branches.isel(point=np.flatnonzero(branches["periods"] == 2))
     for name in dict.fromkeys(map(str, double["variant"].values)):
         own = double.isel(point=np.flatnonzero(double["variant"] == name)).sortby("nu")
+        nu, number = own["nu"].values, own["branch"].values
+        born = [
+            i
+            for i in set(number)
+            if abs(nu[number == i].max() - points.last(name, "flip")) < _CLOSE
+        ]
+        own = own.isel(point=np.flatnonzero(np.isin(number, born)))
+        if not born:
+            continue
         stable = own["nu"].values[own["stability"].values == 1]
         ends = points.of(name, "fold", 2) + points.of(name, "flip", 2)
         passed = [end for end in ends if stable.size and end < stable.max()]

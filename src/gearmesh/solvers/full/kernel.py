@@ -317,8 +317,8 @@ def run(
     Parameters
     ----------
     cases : ndarray of `CASE`, shape (1,)
-    segments : ndarray of `SEGMENT`
-        Segments of a mesh period, in their order. The last one ends with the period.
+    segments : ndarray of `SEGMENT`, shape (1 or periods, segments)
+        Segments of a mesh period, of each one if the speed changes. The last ends with the period.
     variants : ndarray of int, shape (periods + 1,)
         The kind of each period. Periods differ if single teeth have factors.
     tape : tuple of ndarray
@@ -355,15 +355,15 @@ def run(
     series = unowned(workspace)
     table, scaled = series[-TABLE_ROWS:], series[-TABLE_ROWS - 1]
     if mode.stage != UNDER_WAY:
-        pairs, kind = segments[0].pairs, variants[mode.period]
+        pairs, kind = segments[0, 0].pairs, variants[mode.period]
         _start(case, mode, pairs, state, tape, kind, series, strobes, summary)
     last = summary.steps + most_turns
     while summary.steps < last:
-        segment = segments[mode.segment]
+        segment = segments[mode.period % segments.shape[0], mode.segment]
         if mode.time >= segment.end:
             mode.segment += 1
             mode.entered = True
-            if mode.segment == segments.size:
+            if mode.segment == segments.shape[1]:
                 following = variants[mode.period + 1]
                 _pass_boundary(case, mode, state, tape, following, series, strobes, summary)
                 if mode.period == case.periods:

@@ -5,6 +5,7 @@ import numpy as np
 from gearmesh.model.contact import CONTACT_LOSS, INVERSE_MESH
 from gearmesh.solvers.compilation import inner
 from gearmesh.solvers.full.roots import evaluate, evaluate_with_slope
+from gearmesh.solvers.full.speeds import time_of_boundary, time_within
 from gearmesh.solvers.full.tape import (
     BEARINGS,
     FRICTION,
@@ -66,7 +67,7 @@ def record_extremum(case, mode, y, extrema, summary):
     if n >= extrema.size:
         return
     extremum = extrema[n]
-    extremum.time = mode.period * case.period + mode.time
+    extremum.time = time_of_boundary(case, mode.period) + mode.time
     extremum.y = y
     extremum.kind = MAXIMUM if mode.direction > 0.0 else MINIMUM
 
@@ -76,12 +77,12 @@ def sample(case, mode, series, until, samples, per_period, summary):
     """Write the samples before `until`."""
     first = (mode.period - case.first_kept) * per_period
     while summary.samples - first < per_period:
-        time = (summary.samples - first) * (case.period / per_period)
+        time = time_within(case, mode.period, summary.samples - first, per_period)
         if time >= until:
             return
         since = time - mode.time
         sample = samples[summary.samples]
-        sample.time = mode.period * case.period + time
+        sample.time = time_of_boundary(case, mode.period) + time
         sample.y = evaluate(series[Y], case.order, since)
         sample.v, sample.a = evaluate_with_slope(series[V], case.order - 1, since)
         degree = case.order - 2

@@ -17,6 +17,7 @@ from gearmesh.model.contact import CONTACT_LOSS, dynamic_force
 from gearmesh.model.motion import ROTATION_2, ROTATION_3, Y_2, Y_3, start
 from gearmesh.model.problem import Branches, Problem, State
 from gearmesh.model.segments import segments
+from gearmesh.model.speeds import time_of
 from gearmesh.solvers import limits
 from gearmesh.solvers.compilation import persistent
 from gearmesh.solvers.full import kernel
@@ -135,13 +136,16 @@ class Propagation:
         self._run = _Run(run, False, share)
         self._tolerance = tolerance
 
-    def end(self, six: np.ndarray) -> np.ndarray:
+    def end(self, six: np.ndarray, first: int = 0, last: int | None = None) -> np.ndarray:
         """Return the coordinates and rates at the end of the motion, shape (12,).
 
         Parameters
         ----------
         six : ndarray, shape (12,)
             The six coordinates at the start, then their rates.
+        first, last : int
+            The motion starts after `first` of the mesh periods and ends after `last`; by default
+            after all.
 
         Raises
         ------
@@ -149,6 +153,7 @@ class Propagation:
             If it cannot be integrated.
         """
         self._run.start = six
+        self._run.part = first, self._run.problem.periods if last is None else last
         self._run.integrate(self._tolerance)
         if self._run.summary["status"] != OK:
             status = STATUSES[self._run.summary["status"]]
@@ -159,7 +164,8 @@ class Propagation:
 class _Run:
     """A run that can be integrated several times, from any start and with any tolerance.
 
-    Each mesh period is cut off after a `share` of it.
+    Each mesh period is cut off after a `share` of it. `part` says between which mesh periods it is
+    integrated: by default over all.
     """
 
     def __init__(self, problem: Problem, sampled: bool, share: float = 1.0) -> None:
@@ -175,6 +181,7 @@ class _Run:
         )
         self._series = np.zeros((found.height + TABLE_ROWS + 1, WIDTH))
         self.start = np.concatenate(start(problem))
+        self.part = 0, problem.periods
 
     def integrate(
         self,
@@ -200,6 +207,7 @@ class _Run:
         start[ROTATION_3] += displacement
         self.state = projected(start, self.embedding)
         self.mode = _mode(self.problem)
+        self.mode["period"], self._case["periods"] = self.part
         self.strobes = np.zeros((self.problem.periods + 1, 2))
         self.extrema = np.zeros(room, EXTREMUM)
         self.samples = np.zeros(samples_per_period * self.problem.kept_periods, SAMPLE)
@@ -286,7 +294,9 @@ def suitable_order(tolerance: float) -> int:
 def _case(problem: Problem, coordinates: int) -> np.ndarray:
     case = np.zeros(1, CASE)
     # Numbers that have the same name and meaning in both.
-    for name in ("period", "initial_phase", "backlash", "start_period", "periods"):
+    for name in ("nu", "acceleration", "period", "initial_phase", "backlash"):
+        case[name] = getattr(problem, name)
+    for name in ("start_period", "periods"):
         case[name] = getattr(problem, name)
     case["varying_backlash"] = problem.terms.backlash_varies
     case["non_adhesive"] = problem.terms.non_adhesive
@@ -308,13 +318,21 @@ def _case(problem: Problem, coordinates: int) -> np.ndarray:
 
 
 def _segments(problem: Problem, share: float = 1.0) -> np.ndarray:
-    """Return the segments in the first `share` of a mesh period, in the form the kernel takes."""
-    parts = [
-        (min(part.end, share) * problem.period, part.gamma, len(part.pairs))
-        for part in segments(problem)
-        if part.start < share
-    ]
-    return np.array(parts, SEGMENT)
+    """Return the segments in the first `share` of a mesh period, in the form the kernel takes.
+
+    They have one row, or one for each mesh period if the speed changes.
+    """
+    parts = [part for part in segments(problem) if part.start < share]
+    found = np.zeros((1 if problem.final_nu is None else problem.periods, len(parts)), SEGMENT)
+    ends = np.array([min(part.end, share) for part in parts])
+    found["gamma"] = [part.gamma for part in parts]
+    found["pairs"] = [len(part.pairs) for part in parts]
+    if problem.final_nu is None:
+        found["end"] = ends * problem.period
+        return found
+    begins = np.arange(problem.periods)[:, None]
+    found["end"] = time_of(problem, ends, before=begins)
+    return found
 
 
 def _samples(rows: np.ndarray, extremes: np.ndarray) -> Samples:

@@ -25,6 +25,8 @@ COLUMNS = (("lubricant", "•", palette.RED), ("material", "□", palette.BLUE))
 STYLES = {1: {"lw": 1.1, "ls": "-"}, 0: {"lw": 0.8, "ls": "-"}, -1: {"lw": 0.8, "ls": (0, (3, 2))}}
 """Lines of stable, neutral and unstable orbits; neutral ones are grey."""
 
+_FARTHEST = 1.25  # of the backlash, in pictures
+
 MARKS = {"fold": "D", "flip": "s", "grazing_front": "o", "grazing_back": "v", "switching": "^"}
 """Markers of special points; the fold is filled."""
 
@@ -60,7 +62,7 @@ def draw(branches: xr.Dataset, special: list[Row], bifurcation: xr.Dataset) -> F
                 draw_dots(axes, bifurcation.sel(variant=name))
             draw_lines(axes, branches, name, colour)
             draw_marks(axes, special, name)
-        row[0].set_ylim(*row[0].get_ylim())
+        limit(row[0], scale(bifurcation).backlash)
         for axes in row:
             if axes.lines:
                 shade_regions(axes, scale(bifurcation).backlash)
@@ -86,13 +88,13 @@ def draw_lines(axes: Axes, branches: xr.Dataset, name: str, colour: str) -> None
     for number in np.unique(own["branch"]):
         branch = own.isel(point=np.flatnonzero(own["branch"] == number))
         nu, stability = branch["nu"].values, branch["stability"].values
-        double = branch["periods"].values[0] > 1
+        of_period = {1: colour, 2: palette.GREEN}.get(int(branch["periods"][0]), palette.VIOLET)
         ends = np.flatnonzero(np.diff(stability)) + 1
         for piece in np.split(np.arange(nu.size), ends):
             # A piece reaches to the first point of the next one, so that no gap is left.
             piece = np.append(piece, min(piece[-1] + 1, nu.size - 1))
             kind = int(stability[piece[0]])
-            tint = palette.GREY if kind == 0 else palette.GREEN if double else colour
+            tint = palette.GREY if kind == 0 else of_period
             for y in ("y_max_rel", "y_min_rel"):
                 axes.plot(
                     nu[piece],
@@ -101,6 +103,12 @@ def draw_lines(axes: Axes, branches: xr.Dataset, name: str, colour: str) -> None
                     zorder=2.5 + kind,
                     **STYLES[kind],
                 )
+
+
+def limit(axes: Axes, backlash: float) -> None:
+    """Fix the range of y, without the orbits that strike both flanks far beyond the backlash."""
+    low, high = axes.get_ylim()
+    axes.set_ylim(max(low, -_FARTHEST * backlash), min(high, _FARTHEST * backlash))
 
 
 def draw_marks(axes: Axes, special: list[Row], name: str) -> None:
@@ -130,6 +138,7 @@ def handles() -> list[Artist]:
         Line2D([], [], color=palette.INK, label="unstable orbit", **STYLES[-1]),
         Line2D([], [], color=palette.GREY, label="neutral orbit", **STYLES[0]),
         Line2D([], [], color=palette.GREEN, label="orbit of period 2", **STYLES[1]),
+        Line2D([], [], color=palette.VIOLET, label="orbit of period 3 to 12", **STYLES[1]),
         Line2D(
             [], [], color=palette.PALE, ls="none", marker=".", ms=4, label="extrema of the runs"
         ),
@@ -147,4 +156,4 @@ def handles() -> list[Artist]:
         )
         for kind, label in names.items()
     ]
-    return [*lines, *marks, *region_handles(inverse=False)[1:]]
+    return [*lines, *marks, *region_handles()[1:]]

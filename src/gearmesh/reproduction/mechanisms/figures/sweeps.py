@@ -7,7 +7,7 @@ from matplotlib.lines import Line2D
 from gearmesh.reproduction.figures import palette
 from gearmesh.reproduction.figures.canvas import NOT_IN_STUDY, WIDTH, note, shade_regions, styled
 from gearmesh.reproduction.figures.orbit import scale
-from gearmesh.reproduction.mechanisms.figures.branches import STYLES, draw_lines
+from gearmesh.reproduction.mechanisms.figures.branches import STYLES, draw_lines, limit
 
 PANELS = (
     ("b-material", "b □  linear damping"),
@@ -44,7 +44,7 @@ def draw(sweeps: xr.Dataset, branches: xr.Dataset) -> Figure:
             found = sweeps.sel(variant=name, direction=direction)
             for y in ("y_max_rel", "y_min_rel"):
                 axes.plot(found["nu"], found[y], ls="none", zorder=4, **look)
-        axes.set_ylim(*axes.get_ylim())
+        limit(axes, scale(sweeps).backlash)
         shade_regions(axes, scale(sweeps).backlash)
     axes.set_xlim(float(sweeps["nu"].min()), float(sweeps["nu"].max()))
     for axes in grid[1]:
@@ -62,6 +62,7 @@ def draw(sweeps: xr.Dataset, branches: xr.Dataset) -> Figure:
         Line2D([], [], color=palette.PALE, label="unstable orbit", **STYLES[-1]),
         Line2D([], [], color=palette.GREY, label="neutral orbit", **STYLES[0]),
         Line2D([], [], color=palette.GREEN, label="orbit of period 2", **STYLES[1]),
+        Line2D([], [], color=palette.VIOLET, label="orbit of period 3 to 12", **STYLES[1]),
     ]
     figure.legend(handles=[*marks, *lines], loc="outside lower center", ncols=3)
     return figure

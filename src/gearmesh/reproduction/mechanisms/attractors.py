@@ -1,0 +1,128 @@
+"""Branches of the periodic motions on which runs end, of any period.
+
+Many of these motions lie on the branches of `orbits`, which hold the orbits of the mesh period and
+those of twice the period that branch off at flips. Others have longer periods, and many branches
+are closed (isolas): nothing leads to them from another branch. Each stable orbit on which a run
+ends and that lies on no branch so far therefore begins a branch of its own.
+"""
+
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from gearmesh.dynamics import orbits
+from gearmesh.dynamics.attraction.attractors import SAME
+from gearmesh.dynamics.attraction.basins import grid
+from gearmesh.dynamics.attraction.classification import classify
+from gearmesh.errors import NoOrbit
+from gearmesh.interface.branches import Branch, follow
+from gearmesh.interface.orbits import Orbit
+from gearmesh.model.problem import Problem, State
+from gearmesh.model.variants import variant as read_variant
+from gearmesh.reproduction.mechanisms.orbits import Range, branches, doubled
+from gearmesh.study.pair import Pair
+
+EVERY = 16
+"""Runs from other initial states begin at every sixteenth ν_s of a study."""
+
+_NEAR = 0.1  # difference of extremes from those between two points of a branch, in y_st
+_DECIMALS = 5  # of extremes, in y_st
+_AT = 1e-9  # distance in ν_s of a point that is at the frequency
+
+
+def all_branches(pair: Pair, variant: str, nus: np.ndarray) -> list[Branch]:
+    """Return the branches of one variant: those of `orbits`, then those of further attractors.
+
+    Parameters
+    ----------
+    pair : Pair
+        The gear pair.
+    variant : str
+        Name of the variant, such as ``c-lubricant``.
+    nus : ndarray, shape (n,)
+        The mesh frequencies ν_s of the study, ascending.
+    """
+    limits = float(nus[0]), float(nus[-1])
+    single = branches(pair, variant, limits)
+    known = [*single, *doubled(single, limits)]
+    return [*known, *further(known, reached(pair, variant, nus), limits)]
+
+
+def reached(pair: Pair, variant: str, nus: np.ndarray) -> list[Orbit]:
+    """Return the stable orbits on which runs end, or which they approach, in the order of ν_s.
+
+    A run starts at each ν_s as the case of the study does. At every sixteenth ν_s, 36 more start
+    from a grid of y and y'. Orbits of more than 12 mesh periods are not searched for, and neither
+    are motions from which the runs are still far after 60 revolutions
+    (`gearmesh.dynamics.attraction.classification`). Without damping there are none, because no
+    motion attracts another.
+    """
+    chosen = read_variant(variant)
+    cases = [pair.problem(chosen, float(nu)) for nu in nus]
+    if not any(cases[0].material + cases[0].lubricant):
+        return []
+    others = [run for case in cases[::EVERY] for run in _from_grid(case)]
+    ends = {_name(run.orbit): run.orbit for run in classify([*cases, *others]) if run.orbit}
+    return [Orbit(pair, chosen, ends[name].problem.nu, ends[name]) for name in sorted(ends)]
+
+
+def _name(orbit: orbits.Orbit) -> tuple[float, ...]:
+    """Return the numbers by which runs that end on the same orbit are told."""
+    extremes = (round(value, _DECIMALS) for value in (orbit.y_max, orbit.y_min))
+    return orbit.problem.nu, orbit.periods, *extremes
+
+
+def _from_grid(case: Problem) -> list[Problem]:
+    return [replace(case, initial_state=State(*state)) for state in grid(case).tolist()]
+
+
+def further(known: Iterable[Branch], ends: Sequence[Orbit], limits: Range) -> Iterator[Branch]:
+    """Follow the orbits that lie on no branch so far, each in both directions.
+
+    Where such a branch ends at a flip of an orbit of half the period, that orbit is followed too.
+    """
+    found, waiting = list(known), list(ends)
+    while waiting:
+        orbit = waiting.pop(0)
+        if any(holds(branch, orbit) for branch in found):
+            continue
+        try:
+            branch = follow(orbit, "nu", limits)
+        except NoOrbit:
+            continue
+        found.append(branch)
+        waiting[:0] = [
+            point.orbit for point in branch.special if point.orbit.periods < orbit.periods
+        ]
+        yield branch
+
+
+def holds(branch: Branch, orbit: Orbit) -> bool:
+    """Return whether an orbit lies on a branch in ν_s.
+
+    Newton's method corrects the orbits between neighbouring points of the branch at the orbit's
+    ν_s. Extremes are compared, because they do not depend on the mesh period in which an orbit of
+    several periods begins.
+    """
+    found, wanted = branch.found, orbit.reduced
+    if branch.orbit.periods != orbit.periods:
+        return False
+    extremes = np.array([wanted.y_max, wanted.y_min])
+    curve = np.column_stack([found.y_max, found.y_min])
+    away = found.values - orbit.nu
+    away[np.abs(away) < _AT] = 0.0
+    for i in np.flatnonzero(away[:-1] * away[1:] <= 0.0).tolist():
+        change = away[i + 1] - away[i]
+        for share in (-away[i] / change,) if change else (0.0, 1.0):
+            height = curve[i] + share * (curve[i + 1] - curve[i])
+            if np.abs(height - extremes).max() > _NEAR:
+                continue
+            here, there = found.orbits[i].state, found.orbits[i + 1].state
+            try:
+                near = orbits.correct(wanted.problem, here + share * (there - here), orbit.periods)
+            except NoOrbit:
+                continue
+            if np.abs(np.array([near.y_max, near.y_min]) - extremes).max() < SAME:
+                return True
+    return False

@@ -1,0 +1,82 @@
+"""Every periodic motion on which a run ends lies on a branch, whatever its period."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from orbits_in_tables import distance
+
+from gearmesh.dynamics.attraction.attractors import PERIODIC
+from gearmesh.dynamics.attraction.classification import classify
+from gearmesh.dynamics.orbits import correct
+from gearmesh.model.variants import variant
+from gearmesh.reproduction.mechanisms import tables
+from gearmesh.reproduction.mechanisms.attractors import all_branches, further, holds
+from gearmesh.solvers.simulation import simulate
+
+NAME = "c-lubricant"
+NUS = np.round(np.linspace(0.7, 0.765, 27), 4)
+
+
+@pytest.fixture(scope="module")
+def found(pair):
+    return all_branches(pair, NAME, NUS)
+
+
+def test_isolas_of_longer_periods_are_found_and_closed_between_their_folds(found):
+    isolas = {branch.orbit.periods: branch for branch in found if branch.ends[0] == "closed"}
+    assert set(isolas) >= {3, 5}
+    for isola in isolas.values():
+        assert isola.found.stable.any() and not isola.found.stable.all()
+        folds = [point for point in isola.special if point.kind == "fold"]
+        ends = [isola.found.values.min(), isola.found.values.max()]
+        assert sorted(point.nu for point in folds) == pytest.approx(ends, abs=1e-4)
+        for fold in folds:
+            assert np.abs(fold.orbit.multipliers - 1.0).min() < 1e-5
+        places = [(point.kind, round(point.nu, 9)) for point in isola.special]
+        assert len(set(places)) == len(places)  # the place where the branch closes counts once
+
+
+def test_what_remains_of_a_long_run_lies_on_a_branch(pair, found):
+    """Runs of 200 revolutions, where orbits of several periods attract."""
+    nus = [0.705, 0.72, 0.735, 0.76]
+    runs = [pair.replace(revolutions=200).problem(variant(NAME), nu) for nu in nus]
+    for nu, response in zip(nus, simulate(runs, estimate_errors=False), strict=True):
+        ends = [
+            (here.y_max, here.y_min)
+            for branch in found
+            for here in (at(branch, nu) if branch.orbit.periods > 2 else ())
+        ]
+        away = np.abs(np.array(ends) - [response.y_max, response.y_min]).max(axis=1)
+        assert away.min() < 1e-6
+
+
+def at(branch, nu):
+    """Return the orbits of a branch at a frequency, found from the points beside it."""
+    away = branch.found.values - nu
+    for i in np.flatnonzero(away[:-1] * away[1:] <= 0.0).tolist():
+        share = away[i] / (away[i] - away[i + 1])
+        here, there = (branch.found.orbits[k] for k in (i, i + 1))
+        state = here.state + share * (there.state - here.state)
+        yield correct(replace(here.problem, nu=nu), state, branch.orbit.periods)
+
+
+def test_every_periodic_attractor_of_the_cases_is_on_a_branch(pair, found):
+    """The exceptions are runs that are near no stable orbit of at most 12 periods in the end."""
+    cases = [pair.problem(variant(NAME), float(nu)) for nu in NUS]
+    runs = classify(cases)
+    periodic = [run.orbit for run in runs if run.attractor.kind == PERIODIC]
+    assert {orbit.periods for orbit in periodic} >= {3, 4, 5}
+    table = tables.table(NAME, found)
+    for orbit in periodic:
+        assert distance(table, orbit) < 5e-3
+    others = {run.attractor.kind for run in runs if run.orbit is None}
+    assert others <= {"moving", "quasi-periodic", "neutral", "chaotic"}
+
+
+def test_an_orbit_on_a_branch_begins_no_other(found):
+    limits = float(NUS[0]), float(NUS[-1])
+    isola = next(branch for branch in found if branch.orbit.periods == 3)
+    along = [isola.at(i) for i in range(0, len(isola.found.values), 7)]
+    assert all(holds(isola, orbit) for orbit in along)
+    assert not list(further(found, along, limits))
