@@ -72,7 +72,8 @@ class Point:
 
     def reversed(self) -> "Point":
         """Return the same point, seen in the other direction along the curve."""
-        return replace(self, tangent=-self.tangent, determinant=-self.determinant)
+        back = -self.tangent, -self.determinant
+        return Point(self.place, self.values, *back, self.made, self.found)
 
 
 @dataclass(frozen=True)

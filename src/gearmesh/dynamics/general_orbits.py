@@ -10,7 +10,7 @@ a grazing, or where friction begins to stick, steps are smaller and the rounding
 import math
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
-from functools import cached_property
+from functools import cached_property, partial
 from itertools import chain, pairwise
 
 import numpy as np
@@ -40,6 +40,7 @@ SAME = 1e-8
 """Distance between states that count as the same, and between numbers that count as whole."""
 
 _LEAST_GROWTH = 1e-7
+_RESOLVED = 1e-4  # least multiplier that differences over the whole period resolve to 1e-4
 
 
 @dataclass(frozen=True)
@@ -115,6 +116,11 @@ class GeneralOrbit:
         return float(self.response.strobe_v[0])
 
     @property
+    def strobes(self) -> np.ndarray:
+        """Y and y' at the initial phase of each mesh period, shape (periods, 2)."""
+        return np.column_stack([self.response.strobe_y, self.response.strobe_v])[:-1]
+
+    @property
     def y_max(self) -> float:
         """Greatest y."""
         return self.response.y_max
@@ -186,13 +192,47 @@ class GeneralOrbit:
         others = np.linalg.eigvals(finer)
         return max(float(np.abs(others - one).min()) for one in self.multipliers)
 
+    @cached_property
+    def growth(self) -> float:
+        """Logarithm of the greatest growth of a deviation in a mesh period.
+
+        Small multipliers of long periods come from the factors, each of which has its own error.
+        """
+        largest, lost = float(abs(self.multipliers[0])), 0.0
+        if largest < _RESOLVED:
+            whole = np.eye(len(self.monodromy))
+            for factor in self.factors:
+                whole = factor @ whole
+                size = float(np.abs(whole).max())
+                whole, lost = whole / size, lost + math.log(size)
+            largest = float(np.abs(np.linalg.eigvals(whole)).max())
+        return (math.log(largest) + lost) / self.periods
+
+    @property
+    def factors(self) -> list[np.ndarray]:
+        """Jacobians of the mesh periods; `monodromy` is the product of them, the last one first.
+
+        The first and the last one are without the mean rotation at the start and at the end.
+        """
+        found, place, motions = [], self.start, ends(self.held, self.periods)
+        for n in range(self.periods):
+            end = partial(motions, first=n, last=n + 1)
+            found.append(np.array([_slope(end, place, one) for one in np.eye(place.size)]).T)
+            place = end(place)
+        kept = self.chart.kept
+        found[0] = found[0][:, kept]
+        found[-1] = found[-1][kept]
+        return found
+
     def _jacobian(self, step: float) -> np.ndarray:
         end = ends(self.held, self.periods)
         return np.array([_slope(end, self.start, one, step) for one in np.eye(self.end.size)]).T
 
     @property
     def undamped(self) -> bool:
-        """Whether no damping of the mesh acts along the orbit."""
+        """Whether no damping of the mesh or of the rotations acts along the orbit."""
+        if any(self.problem.terms.torsional_damping):
+            return False
         lost = self.response.contact_loss_fraction
         return not (
             (lost > 0.0 and any(self.problem.lubricant))
@@ -248,21 +288,13 @@ class GeneralOrbit:
         return shot_from(problem, state, periods, self.angle)
 
     def at_phase(self, phase: float) -> "GeneralOrbit":
-        """Return the orbit with its state taken at another mesh phase.
-
-        Raises
-        ------
-        NoOrbit
-            If mesh periods differ: then the phase fixes the angles of the shafts.
-        """
-        share = (phase - self.problem.initial_phase) % 1.0
-        if share == 0.0:
+        """Return the orbit with its state taken at another mesh phase."""
+        if phase == self.problem.initial_phase:
             return self
-        if self.repeats_after > 1:
-            raise NoOrbit("mesh periods differ, so the orbit stays at its initial phase")
-        place = ends(self.held, 1, share)(self.start)
+        place = moved_to_phase(self.held, self.start, phase)
+        state = self.chart.unknowns(place, float(self.state[0]))
         problem = replace(self.problem, initial_phase=phase)
-        return shot_from(problem, self.chart.unknowns(place), self.periods, float(place[0]))
+        return shot_from(problem, state, self.periods, float(place[0]))
 
 
 def common_period(problem: Problem) -> int:
@@ -321,9 +353,23 @@ def shot_from(problem: Problem, state: np.ndarray, periods: int, angle: float) -
 
 
 def ends(problem: Problem, periods: int, share: float = 1.0) -> Callable[..., np.ndarray]:
-    """Return a function that maps the place where a motion starts to the place where it ends."""
+    """Return a function that maps the place where a motion starts to the place where it ends.
+
+    Its further arguments are those of `Propagation.end`.
+    """
     chart, motions = chart_of(problem), Propagation(problem, periods, _TOLERANCE, share)
-    return lambda place: chart.place_of_six(motions.end(chart.six(place)))
+    return lambda place, **part: chart.place_of_six(motions.end(chart.six(place), **part))
+
+
+def moved_to_phase(problem: Problem, place: np.ndarray, phase: float) -> np.ndarray:
+    """Return the place where a motion is at another mesh phase, with the shafts as at t = 0."""
+    share = (phase - problem.initial_phase) % 1.0
+    if share > 0.0:
+        place = ends(problem, 1, share)(place)
+    common = common_period(problem)
+    if phase < problem.initial_phase and common > 1:
+        place = ends(replace(problem, initial_phase=phase), common)(place, first=1)
+    return place
 
 
 def run_of(problem: Problem, begun: State, periods: int, samples_per_period: int) -> Response:

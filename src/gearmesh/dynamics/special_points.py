@@ -127,8 +127,9 @@ def _pair_products(jacobians: np.ndarray) -> np.ndarray:
 
     The sums mu_1 mu_2 + mu_3 mu_4, ... are the roots of the resolvent cubic of the polynomial.
     """
-    powers = [jacobians, *(np.linalg.matrix_power(jacobians, k) for k in (2, 3))]
-    one, two, three = (np.trace(power, axis1=1, axis2=2) for power in powers)
+    square = jacobians @ jacobians
+    one, two = (np.einsum("kii->k", power) for power in (jacobians, square))
+    three = np.einsum("kij,kji->k", square, jacobians)
     e_2 = (one**2 - two) / 2.0
     e_3 = (one**3 - 3.0 * one * two + 2.0 * three) / 6.0
     e_4 = np.linalg.det(jacobians)
@@ -215,7 +216,7 @@ def _search(
                 point = _locate(curve, start, end, test)
                 if _confirmed(kind, test, start, point, end):
                     yield kind, point
-            elif _may_dip(test, start, end, beside, offset):
+            elif _may_dip(test, (start, before), (end, after), beside, offset):
                 middle = curve.between(start, end, start.tangent, 0.5)
                 pieces += [(start, middle), (middle, end)]
 
@@ -225,21 +226,25 @@ def _length(left: Point, right: Point) -> float:
 
 
 def _may_dip(
-    test: Callable[[Point], float], left: Point, right: Point, beside: Beside, offset: float
+    test: Callable[[Point], float],
+    left: tuple[Point, float],
+    right: tuple[Point, float],
+    beside: Beside,
+    offset: float,
 ) -> bool:
     """Return whether a function of one sign at both ends may pass 0 in between.
 
     Where it approaches 0 at both ends, the tangents there bound a convex function from below. The
-    slopes are those between the ends and points beside them.
+    slopes are those between the ends, given with their values, and points beside them.
     """
-    length, before, after = _length(left, right), test(left), test(right)
+    (start, before), (end, after) = left, right
+    length, sign = _length(start, end), -1.0 if before < 0.0 else 1.0
     if length < _NARROWEST:
         return False
-    sign = -1.0 if before < 0.0 else 1.0
-    down = sign * (test(beside(left, offset)) - before) / offset
+    down = sign * (test(beside(start, offset)) - before) / offset
     if not down < 0.0:
         return False
-    up = sign * (after - test(beside(right, -offset))) / offset
+    up = sign * (after - test(beside(end, -offset))) / offset
     if not up > 0.0:
         return False
     where = (sign * (after - before) - up * length) / (down - up)
@@ -348,13 +353,14 @@ def _height_above(level: float, phase: float, kind: float) -> Callable[[Point], 
     """
 
     def height(point: Point) -> float:
-        orbit = point.orbit
-        same = orbit.extrema[orbit.extrema[:, 2] == kind]
-        away = same[:, 0] / orbit.problem.period - phase
-        away = np.abs(away - orbit.periods * np.round(away / orbit.periods))
-        if not away.size or away.min() > _SAME_PHASE:
-            return float("nan")
-        return float(same[np.argmin(away), 1] - level * orbit.problem.backlash)
+        orbit, best = point.orbit, _SAME_PHASE
+        found = float("nan")
+        for time, y, kind_there in orbit.extrema.tolist():
+            away = time / orbit.problem.period - phase
+            away = abs(away - orbit.periods * round(away / orbit.periods))
+            if kind_there == kind and away <= best:
+                found, best = y - level * orbit.problem.backlash, away
+        return found
 
     return height
 

@@ -136,13 +136,16 @@ class Propagation:
         self._run = _Run(run, False, share)
         self._tolerance = tolerance
 
-    def end(self, six: np.ndarray) -> np.ndarray:
+    def end(self, six: np.ndarray, first: int = 0, last: int | None = None) -> np.ndarray:
         """Return the coordinates and rates at the end of the motion, shape (12,).
 
         Parameters
         ----------
         six : ndarray, shape (12,)
             The six coordinates at the start, then their rates.
+        first, last : int
+            The motion starts after `first` of the mesh periods and ends after `last`; by default
+            after all.
 
         Raises
         ------
@@ -150,6 +153,7 @@ class Propagation:
             If it cannot be integrated.
         """
         self._run.start = six
+        self._run.part = first, self._run.problem.periods if last is None else last
         self._run.integrate(self._tolerance)
         if self._run.summary["status"] != OK:
             status = STATUSES[self._run.summary["status"]]
@@ -160,7 +164,8 @@ class Propagation:
 class _Run:
     """A run that can be integrated several times, from any start and with any tolerance.
 
-    Each mesh period is cut off after a `share` of it.
+    Each mesh period is cut off after a `share` of it. `part` says between which mesh periods it is
+    integrated: by default over all.
     """
 
     def __init__(self, problem: Problem, sampled: bool, share: float = 1.0) -> None:
@@ -176,6 +181,7 @@ class _Run:
         )
         self._series = np.zeros((found.height + TABLE_ROWS + 1, WIDTH))
         self.start = np.concatenate(start(problem))
+        self.part = 0, problem.periods
 
     def integrate(
         self,
@@ -201,6 +207,7 @@ class _Run:
         start[ROTATION_3] += displacement
         self.state = projected(start, self.embedding)
         self.mode = _mode(self.problem)
+        self.mode["period"], self._case["periods"] = self.part
         self.strobes = np.zeros((self.problem.periods + 1, 2))
         self.extrema = np.zeros(room, EXTREMUM)
         self.samples = np.zeros(samples_per_period * self.problem.kept_periods, SAMPLE)
