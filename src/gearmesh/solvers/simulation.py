@@ -33,7 +33,7 @@ def simulate(
     estimate_errors : bool
         Whether every run has a companion, `LOOSENING` times less accurate and displaced by the
         tolerance at the start, for the estimates `Response.y_max_error`, `y_min_error` and
-        `sensitive`. Costs as much as the run.
+        `sensitive`. Costs less than the run.
 
     Returns
     -------
