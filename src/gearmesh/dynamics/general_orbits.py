@@ -22,12 +22,12 @@ from gearmesh.dynamics.charts import (
     state_at_place,
     with_moments,
 )
+from gearmesh.dynamics.general_events import gap_extrema, stiffness_jumps
 from gearmesh.dynamics.orbits import TimeCourse, sorted_multipliers
 from gearmesh.errors import NoOrbit
 from gearmesh.model.contact import regime_of
 from gearmesh.model.problem import Problem, State
-from gearmesh.solvers.full.runs import Propagation, integrate
-from gearmesh.solvers.reduced.variational import EVENT_SIZE
+from gearmesh.solvers.full.runs import Propagation, Step, integrate, steps_of
 from gearmesh.solvers.response import Response
 
 _TOLERANCE = 1e-14
@@ -130,10 +130,25 @@ class GeneralOrbit:
         found = self.response
         return np.column_stack([found.extremum_time, found.extremum_y, found.extremum_kind])
 
-    @property
+    @cached_property
+    def gap_extrema(self) -> np.ndarray:
+        """Extrema of y + s(t) over the orbit's own period, shape (n, 3) as of `extrema`."""
+        if self.problem.terms.backlash_varies:
+            return gap_extrema(self._steps)
+        return self.extrema + np.array([0.0, self.problem.backlash, 0.0])
+
+    @cached_property
     def stiffness_jumps(self) -> np.ndarray:
-        """Events at which C(t) jumps: none, because the general solver does not list them."""
-        return np.empty((0, EVENT_SIZE))
+        """The events at which C(t) jumps."""
+        return stiffness_jumps(self._run, self._steps)
+
+    @property
+    def _run(self) -> Problem:
+        return _run(self.held, self.initial_state, self.periods)
+
+    @cached_property
+    def _steps(self) -> list[Step]:
+        return list(steps_of(self._run, _TOLERANCE))
 
     @property
     def defect(self) -> np.ndarray:
@@ -328,14 +343,21 @@ def ends(problem: Problem, periods: int, share: float = 1.0) -> Callable[..., np
 
 def run_of(problem: Problem, begun: State, periods: int, samples_per_period: int) -> Response:
     """Integrate whole mesh periods; they are kept if samples are wanted."""
+    run = _run(problem, begun, periods)
+    if samples_per_period:
+        run = replace(run, kept_revolutions=periods)
+    return integrate(run, _TOLERANCE, samples_per_period, estimate_errors=False)
+
+
+def _run(problem: Problem, begun: State, periods: int) -> Problem:
+    """Return the problem of a run over whole mesh periods, none of which is kept."""
     # A run takes whole revolutions: with a "revolution" of one period it takes any number of
     # mesh periods. The wheels keep their teeth.
-    run = replace(
+    return replace(
         problem,
         wheels=problem.both_wheels,
         teeth=1,
         revolutions=periods,
-        kept_revolutions=periods if samples_per_period else 0,
+        kept_revolutions=0,
         initial_state=begun,
     )
-    return integrate(run, _TOLERANCE, samples_per_period, estimate_errors=False)

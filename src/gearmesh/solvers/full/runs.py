@@ -6,8 +6,9 @@ truncated Fourier stiffness), and checks the others.
 """
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import replace
+from typing import NamedTuple
 
 import numpy as np
 from numba import njit
@@ -25,6 +26,7 @@ from gearmesh.solvers.full.measures import SAMPLE, SUMMARY
 from gearmesh.solvers.full.recurrences import raise_failures, recurrences
 from gearmesh.solvers.full.roots import MAX_DEGREE, TABLE_ROWS, WIDTH
 from gearmesh.solvers.full.series import CASE, CONTINUED, MODE, SEGMENT
+from gearmesh.solvers.full.tape import GAP, Y
 from gearmesh.solvers.response import (
     EXTREMUM,
     LOOSENING,
@@ -39,6 +41,28 @@ from gearmesh.solvers.response import (
 _EXTREMA_PER_PERIOD = 64
 # Steps between two returns to Python, where an interruption is noticed: some 0.1 s.
 _MOST_TURNS = 10_000
+
+
+class Step(NamedTuple):
+    """A step of a run.
+
+    Attributes
+    ----------
+    start, duration : float
+        In tau_s; `start` counts from the start of the run.
+    period, segment : int
+        The mesh period, and the place of the segment in it.
+    y, gap : ndarray, shape (order + 1,)
+        Taylor coefficients of y and, if the backlash varies, of y + s(t), from the start of the
+        step.
+    """
+
+    start: float
+    duration: float
+    period: int
+    segment: int
+    y: np.ndarray
+    gap: np.ndarray
 
 
 def _build_run(key: str, cache: bool) -> Callable[..., bool]:
@@ -99,6 +123,11 @@ def integrate(
         run.rotation_drift,
         float(run.summary["least_contact_force"]),
     )
+
+
+def steps_of(problem: Problem, tolerance: float) -> Iterator[Step]:
+    """Yield the steps of a run; they end early if it cannot be integrated."""
+    return _Run(problem, tolerance, 0, suitable_order(tolerance)).steps()
 
 
 class Propagation:
@@ -177,6 +206,7 @@ class _Run:
             variants,
             (found.numbers, found.branches),
         )
+        self._order = order
         self._series = np.zeros((found.height + TABLE_ROWS + 1, WIDTH))
         self.extrema = np.zeros(0, EXTREMUM)
         self.start = np.concatenate(start(problem))
@@ -188,6 +218,30 @@ class _Run:
         self.extrema = self.extrema[:found]
 
     def integrate(self, samples_per_period: int, room: int) -> None:
+        self._begin(samples_per_period, room)
+        while not self._go_on(samples_per_period, _MOST_TURNS):
+            pass
+
+    def steps(self) -> Iterator[Step]:
+        """Integrate the run once more, and yield its steps."""
+        self._begin(0, 0)
+        mode, order = self.mode[0], self._order
+        taken, reached = 0, 0.0
+        while not self._go_on(0, 1):
+            if self.summary["steps"] == taken:
+                continue
+            taken, start = int(self.summary["steps"]), reached
+            reached = mode["period"] * self.problem.period + mode["time"]
+            yield Step(
+                start,
+                reached - start,
+                int(mode["period"]),
+                int(mode["segment"]),
+                self._series[Y, : order + 1].copy(),
+                self._series[GAP, : order + 1].copy(),
+            )
+
+    def _begin(self, samples_per_period: int, room: int) -> None:
         summaries = np.zeros(1, SUMMARY)
         summaries["y_max"], summaries["y_min"] = -np.inf, np.inf
         summaries["least_contact_force"] = np.inf
@@ -198,21 +252,24 @@ class _Run:
         self.strobes = np.zeros((self.problem.periods + 1, 2))
         self.extrema = np.zeros(room, EXTREMUM)
         self.samples = np.zeros(samples_per_period * self.problem.kept_periods, SAMPLE)
-        over = False
-        while not over:
-            over = _compiled_run(
-                *self._arguments,
-                self.state,
-                self.mode,
-                self.strobes,
-                self.extrema,
-                self.samples,
-                samples_per_period,
-                summaries,
-                _MOST_TURNS,
-                self._series,
-            )
-            raise_failures()
+        self._summaries = summaries
+
+    def _go_on(self, samples_per_period: int, most_turns: int) -> bool:
+        """Continue the run by some steps, and return whether it is over."""
+        over = _compiled_run(
+            *self._arguments,
+            self.state,
+            self.mode,
+            self.strobes,
+            self.extrema,
+            self.samples,
+            samples_per_period,
+            self._summaries,
+            most_turns,
+            self._series,
+        )
+        raise_failures()
+        return over
 
     def final_state(self) -> State:
         """Return the state at the end of the run."""
