@@ -12,8 +12,9 @@ export HOME ?= $(CURDIR)/.venv
 
 BIN := .venv/bin
 STAMP := .venv/.installed
-BENCH_STAMP := .venv/.installed-bench
+DEV_STAMP := .venv/.installed-dev
 DOCS_STAMP := .venv/.installed-docs
+BENCH_STAMP := .venv/.installed-bench
 STALE := $(shell sh .ci/stale_environment $(if $(filter file,$(origin PYTHON)),,$(PYTHON)))
 PIP := $(BIN)/python -I -m pip install --quiet --disable-pip-version-check
 # Nothing without a hash is ever installed, so the few packages that come as sources are built
@@ -25,7 +26,7 @@ SNAKEMAKE := $(BIN)/python -I -m snakemake $(if $(CORES),--cores $(CORES))
 UV_COMPILE := uv pip compile --quiet --universal --python-version 3.11 --fork-strategy fewest \
 	--generate-hashes --no-annotate --no-header --no-emit-index-url
 
-.PHONY: help reproduce test test-fast verify mutants bench lint docs identify lock clean always
+.PHONY: help reproduce test test-fast verify mutants bench lint docs lab identify lock clean always
 .DELETE_ON_ERROR:
 
 help: ## show this list
@@ -38,10 +39,10 @@ reproduce: $(STAMP) ## the paper: cases, datasets, figures, ledger and report
 # The tests start many processes, which would all compile every module for themselves.
 test test-fast: export PYTHONDONTWRITEBYTECODE :=
 
-test: $(STAMP) ## the whole test suite
+test: $(DEV_STAMP) ## the whole test suite
 	$(BIN)/python -m pytest -n 2 --dist loadfile --no-loadscope-reorder
 
-test-fast: $(STAMP) ## the tests to run after each edit, under a minute
+test-fast: $(DEV_STAMP) ## the tests to run after each edit, under a minute
 	$(BIN)/python -m pytest -n 2 --dist loadfile --no-loadscope-reorder -m "not slow"
 
 verify: $(STAMP) ## every case again by another solver, and the hashes of all numbers
@@ -52,7 +53,7 @@ verify: $(STAMP) ## every case again by another solver, and the hashes of all nu
 bench: $(BENCH_STAMP) ## the benchmarks, peers side by side
 	$(BIN)/python -m benchmarks
 
-lint: $(STAMP) ## all checks of form: formats, imports, types, workflow, notebooks
+lint: $(DEV_STAMP) ## all checks of form: formats, imports, types, workflow, notebooks
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
 	$(BIN)/snakefmt --check Snakefile workflow
@@ -66,7 +67,10 @@ docs: $(DOCS_STAMP) ## the documentation site, in docs/_build/html
 	$(BIN)/sphinx-build --fail-on-warning --keep-going --quiet -b html docs docs/_build/html
 	$(BIN)/python .ci/lint_docs.py docs/_build/html
 
-mutants: $(STAMP) ## small changes of the code that the tests should notice (four minutes)
+lab: $(DEV_STAMP) ## JupyterLab with the notebooks
+	$(BIN)/jupyter lab notebooks
+
+mutants: $(DEV_STAMP) ## small changes of the code that the tests should notice (four minutes)
 	$(BIN)/python .ci/mutants.py
 
 identify: $(STAMP) ## infer the open parameters from the claims
@@ -74,12 +78,13 @@ identify: $(STAMP) ## infer the open parameters from the claims
 	cp results/paper/identification/identified.yaml config/identified.yaml
 
 lock: ## resolve the requirements again (needs uv)
-	$(UV_COMPILE) requirements.in requirements-study.in requirements-dev.in \
-		--output-file requirements.lock
+	$(UV_COMPILE) requirements.in requirements-study.in --output-file requirements.lock
+	$(UV_COMPILE) requirements-dev.in --constraints requirements.lock \
+		--output-file requirements-dev.lock
 	$(UV_COMPILE) requirements-docs.in --constraints requirements.lock \
-		--output-file requirements-docs.lock
+		--constraints requirements-dev.lock --output-file requirements-docs.lock
 	$(UV_COMPILE) requirements-bench.in --constraints requirements.lock \
-		--output-file requirements-bench.lock
+		--constraints requirements-dev.lock --output-file requirements-bench.lock
 
 clean: ## remove the results and the environment
 	rm -rf .venv .snakemake
@@ -96,8 +101,8 @@ $(STAMP): $(if $(STALE),always)
 	@$(PIP) --no-index --no-deps --no-build-isolation --editable .
 	@sh .ci/stale_environment --state >$@
 
-$(DOCS_STAMP): $(STAMP) requirements-docs.lock
-	@$(LOCKED) -r requirements-docs.lock
+$(DEV_STAMP) $(DOCS_STAMP): .venv/.installed-%: $(STAMP) requirements-%.lock
+	@$(LOCKED) -r requirements-$*.lock
 	@touch $@
 
 # numbalsoda is built from source by tools that this lock names too: they come first. Where it

@@ -30,7 +30,8 @@ class Entry:
 def main() -> int:
     """Run everything."""
     with tempfile.TemporaryDirectory(prefix="against-") as folder:
-        print(against.table(Path(folder), list(against.ROWS)))
+        before = against.table(Path(folder), list(against.ROWS))
+    print(before)
     machine.keep_one_core()
     try:
         from benchmarks.reference import SENSITIVE, references
@@ -63,7 +64,7 @@ def main() -> int:
     }
     RESULTS.write_text(json.dumps(results, indent=1, ensure_ascii=False) + "\n")
     work_precision.draw(points)
-    print(table.render(results))
+    print(table.render(results), before, against.against_heyoka(results), sep="\n")
     return 0
 
 

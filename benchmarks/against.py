@@ -2,29 +2,36 @@
 
 Run from the root of the project: ``python -m benchmarks.against FOLDER [ROW…]``. `FOLDER` keeps a
 clone of each commit with an environment of its own, made where it is missing; what is not committed
-does not count. Without rows all are measured.
+does not count. Without rows all are measured. A row that cannot be measured says why, and the
+others go on.
 
 Processor time is compared, not time on the clock: other work on the machine disturbs it least.
 Short commands run several times, the two commits in turns, and the least time of each counts.
 """
 
-import csv
+import functools
 import os
 import resource
 import shutil
 import subprocess
 import sys
+from collections import Counter
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 
+from benchmarks import processes
 from benchmarks.pipeline_layout import ROOT
 
 BASE = "13961cb"
 CORES = "2"
 SEVERAL = 5
-ADDED = ("orbits", "basins", "sweeps", "bands", "lyapunov", "special_curves", "why", "explorer")
-"""Jobs that the base does not have; the rows on the study leave out what they took."""
+PATIENCE = 1800
+"""Seconds after which a command is given up."""
+LISTED = "processes.jsonl"
+"""Where a run of the study lists its processes."""
+FAILED_TESTS = 1
+"""With this status pytest has run all tests, and some have failed."""
 
 
 def main() -> None:
@@ -37,17 +44,58 @@ def main() -> None:
 def table(folder: Path, rows: list[str]) -> str:
     """Return the table of some rows, with the reason for each that falls short."""
     base, here = _clone(folder / "base", BASE), _clone(folder / "here", "FETCH_HEAD")
-    lines = [f"{'':32}{BASE:>10}{'here':>10}{'ratio':>8}{'asked':>8}"]
+    lines = [f"{'':40}{BASE:>10}{'here':>10}{'ratio':>8}{'asked':>8}"]
     for name in rows:
-        row = ROWS[name]
-        tries = [(row.measure(base), row.measure(here)) for _ in range(row.tries)]
-        before, now = (min(measured) for measured in zip(*tries, strict=True))
-        ratio = now / before
-        lines.append(
-            f"{f'{name}, {row.unit}':32}{before:10.2f}{now:10.2f}{ratio:8.2f}{row.asked:8.2f}"
-            + (f"  {row.reason}" if ratio > row.asked else "")
-        )
+        lines.append(_line(name, ROWS[name], base, here))
         print(lines[-1], file=sys.stderr, flush=True)
+    return "\n".join(lines)
+
+
+def _line(name: str, row: "Row", base: Path, here: Path) -> str:
+    try:
+        tries = [(row.measure(base), row.measure(here)) for _ in range(row.tries)]
+    except (subprocess.SubprocessError, OSError, ValueError) as error:
+        return f"{f'{name}, {row.unit}':40}not measured: {_why(error)}"
+    before, now = (min(measured) for measured in zip(*tries, strict=True))
+    found = now if row.absolute else now / before
+    return (
+        f"{f'{name}, {row.unit}':40}{before:10.2f}{now:10.2f}{found:8.2f}{f'≤ {row.asked:.2f}':>8}"
+        + (f"  {row.reason}" if found > row.asked else "")
+    )
+
+
+def _why(error: Exception) -> str:
+    """Return why a row was not measured, in one line."""
+    if isinstance(error, subprocess.CalledProcessError):
+        last = error.stdout.decode(errors="replace").strip().splitlines()[-1:]
+        return f"a command ended with status {error.returncode}: {''.join(last)}"
+    if isinstance(error, subprocess.TimeoutExpired):
+        return f"a command took more than {PATIENCE} s"
+    return str(error)
+
+
+def against_heyoka(results: dict) -> str:
+    """Return the rows that compare with heyoka: how many times as fast the solver is."""
+    times = {row["solver"]: row["seconds_a_case"] for row in results["table"]}
+    lines = []
+    for kind, peer, asked, reason in (
+        ("sweep", "heyoka, batches", 16, "the samples take a quarter of it; {:.1f} without them"),
+        (
+            "single",
+            "heyoka, scalar",
+            10,
+            "one run fills one lane of a vector; {:.1f} without samples",
+        ),
+    ):
+        name = f"{kind} against {peer}, times as fast"
+        if peer not in times:
+            lines.append(f"{name:40}not measured: {peer} is left out")
+            continue
+        found, bare = (
+            times[peer][kind] / times[ours][kind] for ours in ("gearmesh", "gearmesh, no samples")
+        )
+        short = f"  {reason.format(bare)}" if found < asked else ""
+        lines.append(f"{name:40}{'':10}{'':10}{found:8.2f}{f'≥ {asked}':>8}{short}")
     return "\n".join(lines)
 
 
@@ -60,25 +108,39 @@ def _clone(place: Path, commit: str) -> Path:
     return place
 
 
-def _spent(folder: Path, *command: str | Path, **more: str) -> float:
+def _spent(folder: Path, *command: str | Path, ends: tuple[int, ...] = (0,), **more: str) -> float:
     """Run a command in a clone; return the seconds of processor time."""
     # Bytecode is kept, as on most machines; else each process would compile all modules.
     ordinary = {"PYTHONPATH": str(folder / "src"), "PYTHONDONTWRITEBYTECODE": ""}
-    environment = os.environ | ordinary | more
     before = resource.getrusage(resource.RUSAGE_CHILDREN)
-    subprocess.run(command, cwd=folder, env=environment, check=True, capture_output=True)
+    finished = subprocess.run(
+        command,
+        cwd=folder,
+        env=os.environ | ordinary | more,
+        stdin=subprocess.DEVNULL,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.STDOUT,
+        timeout=PATIENCE,
+        check=False,
+    )
+    if finished.returncode not in ends:
+        finished.check_returncode()
+    if finished.returncode:
+        last = finished.stdout.decode(errors="replace").splitlines()[-1]
+        print(f"{folder.name}: {last}", file=sys.stderr)
     after = resource.getrusage(resource.RUSAGE_CHILDREN)
     return after.ru_utime - before.ru_utime + after.ru_stime - before.ru_stime
 
 
-def _python(folder: Path) -> Path:
-    if not (folder / ".venv" / ".installed").exists():
-        _spent(folder, "make", ".venv/.installed")
+def _python(folder: Path, stamp: str = ".installed") -> Path:
+    """Return the interpreter of a clone, whose environment is made if need be."""
+    _spent(folder, "make", f".venv/{stamp}")
     return folder / ".venv" / "bin" / "python"
 
 
-def _snakemake(folder: Path, *arguments: str) -> float:
-    return _spent(folder, _python(folder), "-m", "snakemake", "--cores", CORES, *arguments)
+def _snakemake(folder: Path, *arguments: str, **more: str) -> float:
+    command = ("-m", "snakemake", "--cores", CORES, *arguments)
+    return _spent(folder, _python(folder), *command, **more)
 
 
 def _environment(folder: Path) -> float:
@@ -96,31 +158,58 @@ def _forget(folder: Path) -> None:
 def _cold(folder: Path) -> float:
     for compiled in [*(folder / "src").rglob("__pycache__")]:
         shutil.rmtree(compiled)
-    return _warm(folder)
+    return _study(folder)[0]
 
 
 def _warm(folder: Path) -> float:
+    return _again(folder)[0]
+
+
+@functools.cache
+def _again(folder: Path) -> tuple[float, Counter[str]]:
+    """Run the study with compiled code there."""
+    if not any((folder / "src").rglob("*.nbi")):
+        _study(folder)
+    return _study(folder)
+
+
+def _study(folder: Path) -> tuple[float, Counter[str]]:
+    """Run the study of the paper; return what it takes without the added jobs, and each job."""
     _forget(folder)
-    return _snakemake(folder) - _of_jobs(folder, ADDED)
+    listed = folder / LISTED
+    listed.unlink(missing_ok=True)
+    places = os.pathsep.join([str(processes.TRACED), str(folder / "src")])
+    spent = _snakemake(folder, PYTHONPATH=places, PROCESSES=str(listed))
+    jobs = processes.of_jobs(listed)
+    return spent - sum(jobs[name] for name in processes.ADDED), jobs
 
 
-def _of_jobs(folder: Path, names: tuple[str, ...]) -> float:
-    """Return the processor time of some jobs, as Snakemake measured it."""
-    spent = 0.0
-    for path in folder.glob("results/*/benchmarks/*.tsv"):
-        [row] = csv.DictReader(path.open(), delimiter="\t")
-        if path.stem.startswith(names) and row["cpu_time"] != "NA":
-            spent += float(row["cpu_time"])
-    return spent
+def _neither(folder: Path) -> float:
+    """Return the share of the study, warm, that is neither integration nor notebooks."""
+    whole, jobs = _again(folder)
+    known = sum(jobs[name] for name in processes.NOTEBOOKS + processes.INTEGRATING)
+    command = (_python(folder), "-c", processes.INTEGRATION)
+    environment = os.environ | {"PYTHONPATH": str(folder / "src")}
+    cases = subprocess.check_output(
+        command, cwd=folder, env=environment, timeout=PATIENCE, stderr=subprocess.STDOUT
+    )
+    return 1 - (known + float(cases.split()[-1])) / whole
+
+
+def _idle(folder: Path) -> float:
+    _snakemake(folder)
+    return _snakemake(folder)
 
 
 def _disk(folder: Path) -> float:
     """Return the megabytes of the results, as blocks of the file system."""
+    _snakemake(folder)
     files = (file for file in (folder / "results").rglob("*") if file.is_file())
     return sum(file.stat().st_blocks for file in files) * 512 / 1e6
 
 
 def _atlas(folder: Path) -> float:
+    _again(folder)
     _forget(folder)
     return _snakemake(folder, "--config", "study=config/atlas.yaml", "--", "data")
 
@@ -138,24 +227,31 @@ def _first(folder: Path) -> float:
 
 
 def _tests(folder: Path) -> float:
-    return _spent(folder, _python(folder), "-m", "pytest", "-q", "-n", CORES, "--dist", "loadfile")
+    apart = (folder / "requirements-dev.lock").exists()
+    python = _python(folder, ".installed-dev" if apart else ".installed")
+    command = ("-m", "pytest", "-q", "-n", CORES, "--dist", "loadfile", "--no-loadscope-reorder")
+    return _spent(folder, python, *command, ends=(0, FAILED_TESTS))
 
 
 @dataclass(frozen=True, slots=True)
 class Row:
-    """What is measured, its unit, the ratio that is asked, and why it may fall short."""
+    """What is measured, its unit, the ratio that is asked, and why it may fall short.
+
+    With `absolute`, what is asked is asked of this commit alone, not of the ratio.
+    """
 
     measure: Callable[[Path], float]
     unit: str
     asked: float
     reason: str
     tries: int = 1
+    absolute: bool = False
 
 
 ROWS = {
     "environment": Row(
         *(_environment, "s", 0.6),
-        "more packages: JupyterLab, and what checks types, CF, RO-Crate and pages in a browser",
+        "TODO",
     ),
     "study cold": Row(*(_cold, "s", 0.55), "numba compiles kernels of the added jobs, too"),
     "study warm": Row(
@@ -163,9 +259,8 @@ ROWS = {
         "SciPy writes a case file in 1 ms, and each of 8 jobs loads numba for the better part of a "
         "second; the rest are notebooks and the thresholds",
     ),
-    "nothing to do": Row(
-        *(_snakemake, "s", 0.8), "Snakemake itself takes most of it", tries=SEVERAL
-    ),
+    "neither integration nor notebooks": Row(*(_neither, "share", 0.5), "TODO", absolute=True),
+    "nothing to do": Row(*(_idle, "s", 0.8), "Snakemake itself takes most of it", tries=SEVERAL),
     "disk": Row(
         *(_disk, "MB", 0.5),
         "a case file of 10 KB takes three blocks of 4 KB, and its numbers, names, units and "

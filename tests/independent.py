@@ -6,6 +6,7 @@ SciPy's DOP853 between events that SciPy locates, and matrix exponentials.
 
 import itertools
 from dataclasses import dataclass, replace
+from math import pi
 
 import numpy as np
 from independent_equations import (
@@ -28,12 +29,14 @@ from independent_equations import (
     elastic,
     holding_force,
     pairs,
+    phase_at,
     pitch_point,
     rates,
     relative_motion,
 )
 from scipy.integrate import solve_ivp
 from scipy.linalg import expm
+from scipy.optimize import brentq
 
 from gearmesh.model.problem import Problem
 
@@ -88,7 +91,7 @@ def integrate(
     for n in range(periods):
         for low, high in itertools.pairwise(stops):
             run.mode = replace(run.mode, inside=n + 0.5 * (low + high) + problem.initial_phase)
-            run.advance((n + high + problem.initial_phase) * problem.period)
+            run.advance(_time_at(problem, n + high))
         strobes.append(run.relative_motion())
     return Course(
         np.array(strobes),
@@ -99,6 +102,19 @@ def integrate(
         run.partings,
         run.pressings,
     )
+
+
+def _time_at(problem: Problem, periods: float) -> float:
+    """Return the time when the mesh has turned by so many mesh periods since the start."""
+    if problem.final_nu is None:
+        return (periods + problem.initial_phase) * problem.period
+    begins = problem.start_time
+    latest = begins + 1.01 * (2.0 * pi * periods) / min(problem.nu, problem.final_nu)
+
+    def behind(t):
+        return phase_at(problem, t) - problem.initial_phase - periods
+
+    return brentq(behind, begins, latest, xtol=1e-13)
 
 
 def _stops(problem: Problem) -> list[float]:

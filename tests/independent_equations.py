@@ -42,17 +42,54 @@ class Body:
         self.damping = [
             2.0 * d * sqrt(c * self.mass) for d, c in zip(ratios, self.stiffness, strict=True)
         ]
-        self.omega = problem.nu / self.teeth
+        self.problem = problem
+
+    def turned(self, t: float) -> float:
+        """Return the mean angle omega_i t."""
+        return turned(self.problem, t) / self.teeth
+
+    def omega(self, t: float) -> float:
+        return speed(self.problem, t) / self.teeth
+
+
+def _acceleration(problem: Problem) -> float:
+    """Return what nu gains in a unit of time if it changes linearly over the run."""
+    periods = problem.revolutions * problem.teeth
+    mean = 0.5 * (problem.nu + problem.final_nu)
+    return (problem.final_nu - problem.nu) / (2.0 * pi * periods / mean)
+
+
+def speed(problem: Problem, t: float) -> float:
+    """Return nu at the time t, which is `start_time` at the start."""
+    if problem.final_nu is None:
+        return problem.nu
+    return problem.nu + _acceleration(problem) * (t - problem.start_time)
+
+
+def turned(problem: Problem, t: float) -> float:
+    """Return the angle of the mesh, nu t if the speed is constant."""
+    if problem.final_nu is None:
+        return problem.nu * t
+    return problem.nu * t + 0.5 * _acceleration(problem) * (t - problem.start_time) ** 2
+
+
+def phase_at(problem: Problem, t: float) -> float:
+    """Return the mesh periods that have passed since t = 0."""
+    return turned(problem, t) / (2.0 * pi)
 
 
 def kept(function):
-    """Remember what a function of a problem returns, by the identity of the problem."""
+    """Remember what a function of a problem, and of a mesh phase, returns.
+
+    The identity of the problem is asked for, because the hash of its many fields takes long.
+    """
     known = {}
 
-    def remembered(problem):
-        if id(problem) not in known:
-            known[id(problem)] = problem, function(problem)
-        return known[id(problem)][1]
+    def remembered(problem, *inside):
+        key = id(problem), *inside
+        if key not in known:
+            known[key] = problem, function(problem, *inside)
+        return known[key][1]
 
     return remembered
 
@@ -69,12 +106,12 @@ def series_of(harmonics, angle: float) -> float:
 
 def backlash(problem: Problem, t: float, x) -> float:
     """Return s(t), with 2 sin(alpha) of what the distance of the centres grows by, where asked."""
-    s = problem.backlash + series_of(problem.terms.backlash_harmonics, problem.nu * t)
+    s = problem.backlash + series_of(problem.terms.backlash_harmonics, turned(problem, t))
     if not problem.terms.backlash_follows_centres:
         return s
     third, second = bodies(problem)
-    turned_3 = third.omega * t + x[PHI_3] / third.radius
-    turned_2 = problem.eccentricity_angle - second.omega * t - x[PHI_2] / second.radius
+    turned_3 = third.turned(t) + x[PHI_3] / third.radius
+    turned_2 = problem.eccentricity_angle - second.turned(t) - x[PHI_2] / second.radius
     e_3, e_2 = problem.eccentricity_3, problem.eccentricity_2
     along = x[Y_2] + e_2 * sin(turned_2) - x[Y_3] - e_3 * sin(turned_3)
     across = x[Z_2] + e_2 * cos(turned_2) - x[Z_3] - e_3 * cos(turned_3)
@@ -86,27 +123,27 @@ def relative_motion(problem: Problem, t: float, x) -> tuple[float, float]:
     """Return y of eq. (3) and its rate in the state `x`, shape (12,)."""
     e_3, e_2 = problem.eccentricity_3, problem.eccentricity_2
     third, second = bodies(problem)
-    total_3 = third.omega * t + x[PHI_3] / third.radius
-    behind = problem.eccentricity_angle - second.omega * t - x[PHI_2] / second.radius
-    speed_3 = third.omega + x[6 + PHI_3] / third.radius
-    speed_2 = second.omega + x[6 + PHI_2] / second.radius
+    total_3 = third.turned(t) + x[PHI_3] / third.radius
+    behind = problem.eccentricity_angle - second.turned(t) - x[PHI_2] / second.radius
+    speed_3 = third.omega(t) + x[6 + PHI_3] / third.radius
+    speed_2 = second.omega(t) + x[6 + PHI_2] / second.radius
     y = x[PHI_3] + x[PHI_2] + x[Y_3] - x[Y_2] + e_3 * sin(total_3) - e_2 * sin(behind)
     rate = x[6 + PHI_3] + x[6 + PHI_2] + x[6 + Y_3] - x[6 + Y_2]
     rate += e_3 * speed_3 * cos(total_3) + e_2 * speed_2 * cos(behind)
     for n, (a, b) in enumerate(problem.deviation, start=1):
-        angle = n * problem.nu * t
+        angle = n * turned(problem, t)
         y += a * cos(angle) + b * sin(angle)
-        rate += n * problem.nu * (b * cos(angle) - a * sin(angle))
+        rate += n * speed(problem, t) * (b * cos(angle) - a * sin(angle))
     return y, rate
 
 
 def bracket(problem: Problem, t: float, x) -> float:
     """Return e_3 Phi_3' sin Phi_3 - e_2 Phi_2' sin(Delta - Phi_2) of eq. (6)."""
     third, second = bodies(problem)
-    turned_3 = third.omega * t + x[PHI_3] / third.radius
-    turned_2 = second.omega * t + x[PHI_2] / second.radius
-    one = problem.eccentricity_3 * (third.omega + x[6 + PHI_3] / third.radius) * sin(turned_3)
-    two = problem.eccentricity_2 * (second.omega + x[6 + PHI_2] / second.radius)
+    turned_3 = third.turned(t) + x[PHI_3] / third.radius
+    turned_2 = second.turned(t) + x[PHI_2] / second.radius
+    one = problem.eccentricity_3 * (third.omega(t) + x[6 + PHI_3] / third.radius) * sin(turned_3)
+    two = problem.eccentricity_2 * (second.omega(t) + x[6 + PHI_2] / second.radius)
     return one - two * sin(problem.eccentricity_angle - turned_2)
 
 
@@ -128,6 +165,7 @@ def pitch_point(problem: Problem) -> float:
     return problem.contact_ratio * before / (before + behind)
 
 
+@kept
 def pairs(problem: Problem, inside: float) -> list[tuple[float, float, int]]:
     """Return gamma, the distance behind the pitch point in base pitches, and number of each pair.
 
@@ -150,6 +188,7 @@ def tooth_factor(problem: Problem, p: int) -> float:
     return product
 
 
+@kept
 def deviates(problem: Problem) -> bool:
     """Return whether flanks have pitch errors or tip relief."""
     terms = problem.terms
@@ -162,7 +201,7 @@ def distance(problem: Problem, t: float, p: int) -> float:
     apart = 0.0
     for errors in (terms.pitch_errors_3, terms.pitch_errors_2):
         apart -= errors[p % len(errors)] if errors else 0.0
-    from_entry = t / problem.period - (p + 0.5 - 0.5 * length)
+    from_entry = phase_at(problem, t) - (p + 0.5 - 0.5 * length)
     for i, from_tip in enumerate((length - from_entry, from_entry)):
         if terms.tip_relief[i]:
             apart += terms.tip_relief[i] * max(0.0, 1.0 - from_tip / terms.tip_relief_length[i])
@@ -177,7 +216,7 @@ def stiffness_of_pairs(problem: Problem, t: float, inside: float) -> dict[int, f
     """Return C / C_s of each pair: its own, or an equal share of eq. (4), cut or as its sum."""
     terms, length = problem.terms, problem.contact_ratio
     touching = pairs(problem, inside)
-    phase = t / problem.period
+    phase = phase_at(problem, t)
     phase -= round(phase - inside)
     if terms.tooth_pair_stiffness:
         values = terms.tooth_pair_stiffness
@@ -202,9 +241,9 @@ def stiffness_of_pairs(problem: Problem, t: float, inside: float) -> dict[int, f
         if not problem.stiffness_harmonics and not terms.stiffness_fourier:
             c = high if len(touching) == 2 else low
         for n in range(1, problem.stiffness_harmonics + 1):
-            c += 2.0 * (high - low) * sin(n * pi * share) / (n * pi) * cos(n * problem.nu * t)
+            c += 2.0 * (high - low) * sin(n * pi * share) / (n * pi) * cos(n * turned(problem, t))
         for n, (a, b) in enumerate(terms.stiffness_fourier, start=1):
-            c += a * cos(n * problem.nu * t) + b * sin(n * problem.nu * t)
+            c += a * cos(n * turned(problem, t)) + b * sin(n * turned(problem, t))
     return {p: c * tooth_factor(problem, p) / len(touching) for _, _, p in touching}
 
 
@@ -231,11 +270,15 @@ def _restoring(problem: Problem, d: float) -> float:
 def contact_force(problem: Problem, t: float, x, mode: Mode) -> float:
     """Return elastic and damping force, eqs. (1) and (7), of flanks in contact or of the film."""
     y, v = relative_motion(problem, t, x)
+    return elastic(problem, t, y, mode, x) + _damping(problem, t, v, mode)
+
+
+def _damping(problem: Problem, t: float, v: float, mode: Mode) -> float:
     k_1, k_2, k_3 = problem.lubricant if mode.regime == CONTACT_LOSS else problem.material
     damping = k_1 * v + k_2 * abs(v) * v + k_3 * v**3
     if mode.regime != CONTACT_LOSS and problem.terms.damping_power:
         damping *= stiffness(problem, t, mode.inside) ** problem.terms.damping_power
-    return elastic(problem, t, y, mode, x) + damping
+    return damping
 
 
 def bearing(problem: Problem, i: int, x) -> float:
@@ -253,12 +296,14 @@ def holding_force(problem: Problem, x) -> float:
 
 def rates(problem: Problem, t: float, x, mode: Mode) -> list[float]:
     """Return the derivative of the state, eq. (1)."""
-    y, _ = relative_motion(problem, t, x)
-    force = 0.0 if mode.parted else elastic(problem, t, y, mode, x)
-    normal = 0.0 if mode.parted else contact_force(problem, t, x, mode)
+    force = normal = 0.0
+    if not mode.parted:
+        y, v = relative_motion(problem, t, x)
+        force = elastic(problem, t, y, mode, x)
+        normal = force + _damping(problem, t, v, mode)
     signs = mode.run_out_sign * mode.slip_sign
     third, second = bodies(problem)
-    moved = t / problem.period - mode.inside
+    moved = phase_at(problem, t) - mode.inside
     moved -= round(moved)
     f_t = moment_3 = moment_2 = 0.0
     touching = pairs(problem, mode.inside)
@@ -271,13 +316,13 @@ def rates(problem: Problem, t: float, x, mode: Mode) -> list[float]:
         moment_3 -= (middle + shift / third.teeth) * pair
         moment_2 -= (middle - shift / second.teeth) * pair
     lever_3 = 1.0 + problem.eccentricity_3 / third.radius * cos(
-        third.omega * t + x[PHI_3] / third.radius
+        third.turned(t) + x[PHI_3] / third.radius
     )
-    behind = problem.eccentricity_angle - second.omega * t - x[PHI_2] / second.radius
+    behind = problem.eccentricity_angle - second.turned(t) - x[PHI_2] / second.radius
     lever_2 = 1.0 + problem.eccentricity_2 / second.radius * cos(behind)
     terms = problem.terms
-    load_3 = 1.0 + series_of(terms.torque_harmonics_3, problem.nu * t)
-    load_2 = 1.0 + series_of(terms.torque_harmonics_2, problem.nu * t)
+    load_3 = 1.0 + series_of(terms.torque_harmonics_3, turned(problem, t))
+    load_2 = 1.0 + series_of(terms.torque_harmonics_2, turned(problem, t))
     load_3 -= terms.torsional_damping[0] * x[6 + PHI_3]
     load_2 -= terms.torsional_damping[1] * x[6 + PHI_2]
     supports = [bearing(problem, i, x) if i > 1 else 0.0 for i in range(6)]

@@ -15,13 +15,16 @@ import sys
 import tempfile
 import time
 from collections.abc import Callable, Mapping, Sequence
+from multiprocessing.forkserver import ensure_running
 from pathlib import Path
+from unittest.mock import patch
 
 SERVER = multiprocessing.get_context("forkserver")
 SERVER.set_forkserver_preload(
     [
         *("snakemake.cli", "snakemake.report.html_reporter", "snakemake.storage"),
-        *("docutils.core", "jinja2", "pydantic", "requests", "scipy.io", "yte"),
+        *("docutils.core", "jinja2", "pydantic", "requests", "scipy.io", "smart_open", "yte"),
+        "snakemake_ready",
     ]
 )
 PATIENCE = 280
@@ -45,6 +48,8 @@ class Run:
         self, folder: Path, environment: Mapping[str, str], arguments: Sequence[str]
     ) -> None:
         self._output = tempfile.NamedTemporaryFile("r", encoding="utf-8")  # noqa: SIM115
+        with patch.dict(os.environ, PYTHONPATH=str(Path(__file__).parent)):
+            ensure_running()
         given = (folder, dict(environment), arguments, self._output.name)
         self._process = SERVER.Process(target=_snakemake, args=given)
         self._process.start()

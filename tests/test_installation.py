@@ -1,6 +1,7 @@
 """What `pip install gearmesh` brings: the library alone, and the paper's parameters with it."""
 
 import os
+import re
 import shutil
 import subprocess
 import sys
@@ -67,7 +68,7 @@ def test_the_library_works_from_a_wheel_without_what_only_a_study_needs(
     pip = (sys.executable, "-m", "pip", "--quiet", "install", "--no-index", "--no-deps")
     run(*pip, "--target", site, wheel, folder=tmp_path)
     lines = (ROOT / "requirements-study.in").read_text(encoding="utf-8").splitlines()
-    names = [line.split(">")[0] for line in lines if line and not line.startswith("#")]
+    names = [found[0] for line in lines if (found := re.match(r"[\w-]+", line))]
     absent = [*POSIX, *(name.replace("-", "_") for name in names)]
     code = WITHOUT.format(absent=absent)
     run(sys.executable, "-c", code, folder=tmp_path, PYTHONPATH=str(site))

@@ -8,8 +8,10 @@ import numpy as np
 
 import gearmesh as gm
 from benchmarks.orbits import settling
-from gearmesh.dynamics.attraction.basins import Basins, basins, initial_states
+from gearmesh.dynamics.attraction.basins import Basins, basins
+from gearmesh.dynamics.attraction.maps import map_of
 from gearmesh.dynamics.attraction.regions import region_of
+from gearmesh.dynamics.starts import initial_states
 from gearmesh.model.problem import Problem
 from gearmesh.model.variants import variant
 
@@ -89,8 +91,8 @@ def _near(known: Basins) -> Reached:
 
 def _in_regions(known: Basins) -> Reached:
     """Return the function that tells in which orbit's trapping region states are."""
-    phase = _problem().initial_phase
-    regions = [region_of(attractor.orbit, phase) for attractor in known.attractors]
+    moved = map_of(_problem())
+    regions = [region_of(moved, attractor.orbit) for attractor in known.attractors]
 
     def reached(states: np.ndarray) -> np.ndarray:
         inside = np.array([region.holds(states) for region in regions])

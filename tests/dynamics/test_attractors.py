@@ -14,11 +14,13 @@ from gearmesh.dynamics.attraction.attractors import (
     PERIODIC,
     stable_orbits_near,
 )
-from gearmesh.dynamics.attraction.basins import basins, initial_states, reached, wilson_interval
+from gearmesh.dynamics.attraction.basins import basins, reached, wilson_interval
 from gearmesh.dynamics.attraction.envelopes import envelope_of
 from gearmesh.dynamics.attraction.growth import growth_rates
 from gearmesh.dynamics.attraction.lyapunov import lyapunov_spectrum
+from gearmesh.dynamics.attraction.maps import map_of
 from gearmesh.dynamics.attraction.regions import region_of
+from gearmesh.dynamics.starts import initial_states
 from gearmesh.model.problem import State
 from gearmesh.solvers.reduced.ensembles import advance, advance_to_phase, laws_of
 from gearmesh.solvers.reduced.period_map import passage
@@ -87,7 +89,7 @@ def test_many_starts_are_moved_as_one_is():
 def test_no_motion_leaves_a_trapping_region(two_orbits):
     case, found = two_orbits
     for attractor in found.attractors:
-        region = region_of(attractor.orbit, case.initial_phase)
+        region = region_of(map_of(case), attractor.orbit)
         assert region.size >= 0.01
         away = np.random.default_rng(1).standard_normal((200, 4))
         away *= 0.99 * region.size / np.linalg.norm(away @ region.forms[0].T, axis=1)[:, None]
@@ -120,7 +122,8 @@ def test_runs_that_are_not_followed_to_their_end_end_where_they_were_said_to():
 
 def test_a_displaced_start_decays_as_the_multiplier_says():
     case = problem(0.9, "c-material", **HEAVY)
-    [orbit] = stable_orbits_near(case, advance(laws_of([case]), np.array([[1, 0, -2, 0]]), 400), 1)
+    settled = advance(laws_of([case]), np.array([[1.0, 0.0, -2.0, 0.0]]), 400)
+    [orbit] = stable_orbits_near(map_of(case), settled, 1)
     values, vectors = np.linalg.eig(orbit.passage.jacobian)
     slowest = np.abs(values).argmax()
     away = vectors[:, slowest].real
@@ -140,7 +143,7 @@ def test_without_damping_motion_is_neutral_or_chaotic():
     states = np.array([[1.0, 0.0, -2.0, 0.0], [3.5, 2.0, -2.0, 0.0]])
     found = reached(case, states)
     assert [found.attractors[label].kind for label in found.labels] == [NEUTRAL, CHAOTIC]
-    rates = growth_rates(laws_of([case]), states)
+    rates = growth_rates(map_of(case), states)
     for state, rate in zip(states, rates, strict=True):
         exact = lyapunov_spectrum(case, state, 400, 100).exponents[0]
         # Chaos forgets its start, so two estimates agree as means over the same time do.

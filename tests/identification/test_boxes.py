@@ -6,8 +6,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy.stats import qmc
 
-from gearmesh.identification import boxes, focus, inference
+from gearmesh.identification.estimation import focus, inference
 from gearmesh.identification.factors import FACTORS
+from gearmesh.identification.sampling import boxes
 
 
 @given(st.lists(st.floats(0, 1), min_size=2, max_size=20), st.sampled_from([*FACTORS]))

@@ -6,8 +6,10 @@ import pytest
 
 from gearmesh.data import paths
 from gearmesh.errors import InputError
-from gearmesh.identification import design, inference, layout, table
+from gearmesh.identification import layout, table
+from gearmesh.identification.estimation import inference
 from gearmesh.identification.factors import KINDS
+from gearmesh.identification.sampling import design
 from gearmesh.identification.settings import load_settings
 from gearmesh.report.identified import OPEN
 from gearmesh.reproduction.claims import load_ledger

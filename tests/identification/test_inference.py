@@ -6,8 +6,14 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from gearmesh.errors import InputError
-from gearmesh.identification import inference, prediction, sensitivity, synthetic, wording
-from gearmesh.identification.wording import Statement
+from gearmesh.identification.estimation import (
+    inference,
+    prediction,
+    sensitivity,
+    synthetic,
+    wording,
+)
+from gearmesh.identification.estimation.wording import Statement
 from gearmesh.reproduction.claims import Claim, holds
 
 NUMBER = Claim(

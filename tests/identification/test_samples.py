@@ -10,9 +10,10 @@ from project import Project
 from gearmesh.data import paths
 from gearmesh.data.paths import Places
 from gearmesh.dynamics.response_curves import WIDTH
-from gearmesh.identification import design, layout, store, survey, table
-from gearmesh.identification.curves import ACCURACY, SampledCurve, scan_all
+from gearmesh.identification import layout, table
 from gearmesh.identification.factors import KINDS
+from gearmesh.identification.sampling import design, store, survey
+from gearmesh.identification.sampling.curves import ACCURACY, SampledCurve, scan_all
 from gearmesh.identification.settings import load_settings
 from gearmesh.model.variants import variant
 from gearmesh.reproduction import thresholds
@@ -125,10 +126,13 @@ def small(tmp_path_factory):
     for stated in settings["designs"].values():
         stated["points"] = 2
     settings["designs"]["survey"]["points"] = 8
-    del settings["designs"]["natural_nearer"]  # no more than `nearer` shows
+    for name in ("natural_near", "natural_nearer"):  # no more than `near` and `nearer` show
+        del settings["designs"][name]
     # One design on the full model is enough, and dear enough.
     settings["designs"]["run_out_alone"]["vary"] = ["eccentricity_angle"]
     (project.folder / SETTINGS).write_text(yaml.safe_dump(settings), encoding="utf-8")
+    # Short runs, because only what becomes of them is of interest.
+    project.edit("config/tiny.yaml", "title:", "revolutions: 2\ntitle:")
     project.finished = project.run("identify")
     return project
 

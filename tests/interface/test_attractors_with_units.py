@@ -55,7 +55,9 @@ def test_exponents_of_an_orbit_are_those_of_its_multipliers(pair):
 
 
 WRONG = {
-    "run-out": lambda pair: gm.attractors(pair.replace(eccentricity="10 um"), "c-material", 0.7),
+    "no common period": lambda pair: gm.attractors(
+        pair.replace(torque_harmonics=[{"order": 0.3141, "cos": 0.05}]), "c-material", 0.7
+    ),
     "a start": lambda pair: gm.attractors(pair, "c-material", 0.7, starts=[("1 kg", 0)]),
     "starts": lambda pair: gm.attractors(pair, "c-material", 0.7, starts=[]),
     "revolutions": lambda pair: gm.attractors(pair, "c-material", 0.7, revolutions=0),

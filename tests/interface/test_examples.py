@@ -92,6 +92,19 @@ def test_bgu_18_35_states_what_geometry_computes(example):
     assert float(run.contact_loss_fraction) > 0.3
 
 
+def test_ufam_27_35_states_what_geometry_computes_and_parts_at_resonance(example):
+    """The equivalent mass and the force are those that the code of the source computes."""
+    pair = example("ufam-27-35").pair
+    wheels = gm.geometry(module="3 mm", teeth=(27, 35), face_width="25 mm")
+    assert pair.replace(**wheels.parameters).digest() == pair.digest()
+    assert pair.reduced_mass == pytest.approx(0.349311, rel=1e-6)
+    assert pair.static_force == pytest.approx(10_036.7, rel=1e-5)
+    found = gm.sweep(pair, "b-both", ["2000 rpm", "11000 rpm"], loads=True, revolutions=3).squeeze()
+    stated, near = found.dynamic_factor.values
+    assert near > 2.0 * stated
+    assert found.contact_loss_fraction.values[0] == 0.0 < found.contact_loss_fraction.values[1]
+
+
 def test_a_cracked_tooth_makes_sidebands_of_its_wheel(example):
     """Orders 1 + k/38: the driven wheel has 38 teeth. Without the crack there are none."""
     study = example("bgu-cracked-tooth")

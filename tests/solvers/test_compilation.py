@@ -18,7 +18,7 @@ from gearmesh.data import provenance
 from gearmesh.solvers import compilation, sources
 from gearmesh.solvers.compilation import persistent
 
-PROCESSES = 3
+PROCESSES = 2
 PACKAGE = Path(gearmesh.__file__).parent
 
 

@@ -16,9 +16,7 @@ import pytest
 from gearmesh.model.variants import VARIANTS, variant
 from gearmesh.study.loading import load_study
 
-pytest.importorskip(
-    "heyoka", reason="heyoka is not installed: pip install -r requirements-bench.in"
-)
+pytest.importorskip("heyoka", reason="heyoka is not installed: its wheels are for Linux only")
 
 from benchmarks.outcome import deviation
 from benchmarks.peers import OURS, PEERS

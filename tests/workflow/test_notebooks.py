@@ -3,12 +3,15 @@
 import ast
 import json
 
+import matplotlib as mpl
 import nbformat
 import pytest
+from matplotlib.image import imread
 
 from gearmesh.data import paths
 from gearmesh.data.paths import Places
 from gearmesh.reproduction.claims import load_ledger, read_entries
+from gearmesh.reproduction.figures import canvas
 
 PAPER, SMOKE = Places("paper"), Places("smoke")
 PLACES = {
@@ -85,7 +88,10 @@ def test_a_notebook_needs_no_equation_renderer(notebook):
 
 
 @each_notebook
-def test_a_notebook_runs_and_leaves_figure_and_checks(name, notebook, root, small_run, tmp_path):
+def test_a_notebook_leaves_checks_and_the_same_bytes_as_in_the_pipeline(
+    name, notebook, root, small_run, smoke, tmp_path
+):
+    """Whatever the settings of matplotlib are."""
     given = {
         "configuration": root / paths.SMOKE,
         "ledger": root / paths.CLAIMS,
@@ -97,12 +103,16 @@ def test_a_notebook_runs_and_leaves_figure_and_checks(name, notebook, root, smal
         },
     }
     namespace = {}
-    for cell in code_cells(notebook):
-        exec(cell.source, namespace)
-        if cell is parameter_cell(notebook):
-            namespace.update({key: str(value) for key, value in given.items() if key in namespace})
-    assert (tmp_path / f"{name}.png").stat().st_size > 10_000
-    assert (tmp_path / f"{name}.svg").stat().st_size > 10_000
+    with mpl.rc_context({"font.size": 30, "svg.hashsalt": "other", "savefig.dpi": 20}):
+        for cell in code_cells(notebook):
+            exec(cell.source, namespace)
+            if cell is parameter_cell(notebook):
+                stated = {key: str(value) for key, value in given.items() if key in namespace}
+                namespace.update(stated)
+    for file in (f"{name}.png", f"{name}.svg"):
+        assert (tmp_path / file).read_bytes() == (smoke.study / "figures" / file).read_bytes()
+    assert imread(tmp_path / f"{name}.png").shape[1] >= 200 * canvas.WIDTH
+    assert b"<dc:date>" not in (tmp_path / f"{name}.svg").read_bytes()
     expected = [claim.id for claim in load_ledger(root / paths.CLAIMS) if claim.figure == name]
     assert [entry.id for entry in read_entries(tmp_path / "checks.json")] == expected
 

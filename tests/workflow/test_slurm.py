@@ -1,4 +1,4 @@
-"""Cases, thresholds and a figure of the small study on a real Slurm: the same bytes."""
+"""Cases, datasets and a figure of the small study on a real Slurm: the same bytes."""
 
 import os
 import shutil
@@ -117,15 +117,15 @@ def wait_until_idle(folder: Path) -> None:
 @pytest.mark.timeout(900)
 def test_slurm_gives_the_bytes_of_a_local_run(slurm, smoke: Project, tmp_path: Path):
     project = smoke.copy(tmp_path / "project")
-    for name in ("batches/c.nc", "datasets/thresholds.json", "figures/fig2.png"):
+    for name in ("batches/c.nc", "datasets/resonance.nc", "figures/fig2.png"):
         (project.study / name).unlink()
     for folder in project.study.glob("cases/c-*"):
         shutil.rmtree(folder)
     polled = ("--slurm-init-seconds-before-status-checks", "5")
-    figure = "results/smoke/figures/fig2.png"  # needs cases, the thresholds and a notebook
+    figure = "results/smoke/figures/fig2.png"  # needs cases, datasets and a notebook
     finished = project.run(figure, options=("--profile", "profiles/slurm", *polled))
     assert finished.returncode == 0, finished.stdout
     assert "SLURM" in finished.stdout, finished.stdout
     made, expected = project.results(), smoke.results()
-    assert {"figures/fig2.png", "datasets/thresholds.json", "batches/c.nc"} <= made.keys()
+    assert {"figures/fig2.png", "datasets/resonance.nc", "batches/c.nc"} <= made.keys()
     assert made == expected

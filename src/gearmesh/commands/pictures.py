@@ -16,7 +16,10 @@ def plot(options: argparse.Namespace) -> int:
     run = figures.read_run(options.case)
     output = options.output or options.case.with_suffix(".png")
     figures.save(figures.draw([run]), output)
-    print(f"{output}: phase plane, stroboscopic points and time course of {_label(run)}")
+    shown = "phase plane, stroboscopic points and time course"
+    if figures.is_ramp(run):
+        shown = "response over the speed"
+    print(f"{output}: {shown} of {_label(run)}")
     return 0
 
 

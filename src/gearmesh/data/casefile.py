@@ -20,6 +20,7 @@ from gearmesh.data import classic, provenance
 from gearmesh.data.classic import Variable
 from gearmesh.model.problem import Problem
 from gearmesh.solvers.loads import loads
+from gearmesh.solvers.ramps import by_speed
 from gearmesh.solvers.response import STATUSES, Response
 from gearmesh.study.cases import Case
 from gearmesh.study.pair import Pair
@@ -135,7 +136,19 @@ LOAD_SAMPLE_FIELDS = (
 )  # fmt: skip
 """The loads over time."""
 
-ALL_FIELDS = (*FIELDS, *LOAD_FIELDS, *SAMPLE_FIELDS, *LOAD_SAMPLE_FIELDS)
+RAMP_FIELDS = (
+    Field("nu", "sample", "1", "mesh frequency nu_s"),
+    Field("speed", "sample", "rpm", "speed of wheel 3"),
+    Field("strobe_nu", "boundary", "1", "mesh frequency nu_s after n mesh periods"),
+    Field("strobe_speed", "boundary", "rpm", "speed of wheel 3 after n mesh periods"),
+    Field("period_nu", "period", "1", "mesh frequency nu_s in the middle of a mesh period"),
+    Field("period_speed", "period", "rpm", "speed of wheel 3 in the middle of a mesh period"),
+    Field("period_y_max", "period", "mm", "maximum of y over a kept mesh period"),
+    Field("period_y_min", "period", "mm", "minimum of y over a kept mesh period"),
+)
+"""The speed, and the response to it, of a run whose speed changes."""
+
+ALL_FIELDS = (*FIELDS, *LOAD_FIELDS, *SAMPLE_FIELDS, *LOAD_SAMPLE_FIELDS, *RAMP_FIELDS)
 """All variables, in the order of a file."""
 
 
@@ -149,17 +162,19 @@ def record(response: Response, pair: Pair, problem: Problem | None = None) -> Re
     pair : Pair
         They set the scales of length, time and force.
     problem : Problem, optional
-        The run, if the record is to hold its loads; its response must have samples.
+        The run, if the record is to hold its loads, and its speed where it changes; its response
+        must have samples.
     """
     scales = {
         "mm": pair.static_deflection,
         "s": 1.0 / pair.natural_frequency,
         "N/mm": pair.stiffness_mean,
         "N": pair.static_force,
+        "rpm": pair.resonance_speed,
     }
     columns: Record = {}
-    values = itertools.chain(_values(response), _loads(response, problem) if problem else ())
-    for field, value in values:
+    further = (_loads(response, problem), _ramp(response, problem)) if problem else ()
+    for field, value in itertools.chain(_values(response), *further):
         array = np.asarray(field.fill if value is None else value, field.kind)
         if field.dimension and array.size == 0:  # of a run that failed
             # The format has no dimension of length 0, so a value that is absent stands for none.
@@ -173,7 +188,7 @@ def record(response: Response, pair: Pair, problem: Problem | None = None) -> Re
 
 def without_time_course(columns: Record) -> Record:
     """Return a record without the variables over samples."""
-    fields = (*SAMPLE_FIELDS, *LOAD_SAMPLE_FIELDS)
+    fields = (*SAMPLE_FIELDS, *LOAD_SAMPLE_FIELDS, *RAMP_FIELDS)
     sampled = {name for field in fields for name in (field.name, field.relative)}
     return {name: values for name, values in columns.items() if name not in sampled}
 
@@ -223,6 +238,15 @@ def _loads(response: Response, problem: Problem) -> Iterator[tuple[Field, object
         values = getattr(response.samples, field.name)
         if values is not None:
             yield field, values
+
+
+def _ramp(response: Response, problem: Problem) -> Iterator[tuple[Field, object]]:
+    if problem.final_nu is None or response.samples is None:
+        return
+    found = by_speed(problem, response)
+    for field in RAMP_FIELDS:
+        name = field.name.replace("speed", "nu")
+        yield field, found[name]
 
 
 @functools.lru_cache(maxsize=2**13)

@@ -13,6 +13,7 @@ from gearmesh.data.casefile import (
     ALL_FIELDS,
     FIELDS,
     LOAD_FIELDS,
+    RAMP_FIELDS,
     Field,
     Record,
     absent,
@@ -32,7 +33,8 @@ _FINAL_STATE = "final_state"
 def run_dataset(response: Response, pair: Pair, case: Case) -> xr.Dataset:
     """Return one run as a dataset, with the variables and attributes of its case file.
 
-    The samples have the dimension and coordinate ``time``, so ``ds.y.plot()`` works.
+    The samples have the dimension and coordinate ``time``, so ``ds.y.plot()`` works. A speed
+    that changes is a coordinate too: ``ds.period_y_max.plot(x="period_nu")``.
     """
     columns = record(response, pair, pair.problem(case.variant, case.nu))
     stated = attributes(pair, case) | {_FINAL_STATE: _written(response.final_state)}
@@ -42,7 +44,8 @@ def run_dataset(response: Response, pair: Pair, case: Case) -> xr.Dataset:
             dimension = "time" if field.dimension == "sample" else field.dimension
             for name, values, described in _twins(field, columns):
                 dataset[name] = ((dimension,) if dimension else (), values, described)
-    return dataset.set_coords("time") if "time" in dataset else dataset
+    coordinates = ["time", *(one.name for one in RAMP_FIELDS if one.unit in ("1", "rpm"))]
+    return dataset.set_coords([name for name in coordinates if name in dataset])
 
 
 def _written(state: State | None) -> str:

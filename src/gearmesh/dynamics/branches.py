@@ -89,10 +89,12 @@ def follow(
 ) -> Branch:
     """Follow an orbit in one parameter, in both directions.
 
+    The branch begins at the end with the lower value of the parameter.
+
     Parameters
     ----------
     orbit : Shot
-        Where to begin.
+        Where to start.
     parameter : str
         A field of `Problem`, or a name of what `family` varies.
     limits : tuple of float
@@ -125,7 +127,9 @@ def follow(
         stretches=stretches(family, value),
     )
     start = curve.at(moved, (value,))
-    back, ahead = walk(curve, start, (limits,), longest_step)
+    walks = walk(curve, start, (limits,), longest_step)
+    # Near a branching the slope may be rounding, so the ends tell where the branch begins.
+    back, ahead = sorted(walks, key=lambda one: one.pieces[-1].points[-1].values)
     pieces = joined(back, ahead)
     special = [
         SpecialPoint(kind, found.problem.nu, {parameter: point.values[0]}, found)
@@ -151,8 +155,8 @@ def _special(pieces: list[Piece]) -> list[tuple[str, Point]]:
     return [
         found
         for piece in pieces
-        for i in suspects(piece.points)
-        for found in special_points(piece.curve, piece.points[i], piece.points[i + 1])
+        for i, kinds in suspects(piece.points)
+        for found in special_points(piece.curve, piece.points[i], piece.points[i + 1], kinds)
     ]
 
 

@@ -52,6 +52,12 @@ class Chart:
         """Number of coordinates."""
         return self.columns.shape[1]
 
+    @property
+    def kept(self) -> np.ndarray:
+        """Where the numbers of a place stand that multipliers describe."""
+        left_out = {ABSENT: [], FREE: [0], HELD: [0, self.n]}[self.rotation]
+        return np.delete(np.arange(2 * self.n), left_out)
+
     def place_of_six(self, six: np.ndarray) -> np.ndarray:
         """Return the place of a motion in the six coordinates and their rates."""
         found = projected(six, self.columns)
@@ -73,14 +79,33 @@ class Chart:
             return np.append(held, place[1:])
         return place[1:] if self.rotation == FREE else place
 
+    def rescaled(self, unknowns: np.ndarray, periods: int, others: int) -> np.ndarray:
+        """Return the unknowns of a motion over `others` instead of `periods` mesh periods."""
+        if self.rotation != HELD:
+            return unknowns
+        return np.append(unknowns[0] * (others / periods) ** 2, unknowns[1:])
+
     def closing(self, start: np.ndarray, end: np.ndarray) -> np.ndarray:
         """Return by how much a motion between two places fails to close."""
         return (end - start)[1:] if self.rotation == FREE else end - start
 
+    def carried_on(
+        self, start: np.ndarray, end: np.ndarray, held: float, duration: float
+    ) -> np.ndarray:
+        """Return the unknowns with which a motion goes on after the time `duration`.
+
+        If the mean rotation is held, a drive corrects its angle, its rate and the holding moments.
+        """
+        if self.rotation != HELD:
+            return self.unknowns(end)
+        gained, sped = (end - start)[[0, self.n]].tolist()
+        place = end.copy()
+        place[self.n] = start[self.n] - gained / duration + 0.5 * sped
+        return self.unknowns(place, held - sped * duration)
+
     def monodromy(self, jacobian: np.ndarray) -> np.ndarray:
         """Return the Jacobian of places without the rows and columns of the mean rotation."""
-        left_out = {ABSENT: [], FREE: [0], HELD: [0, self.n]}[self.rotation]
-        return np.delete(np.delete(jacobian, left_out, 0), left_out, 1)
+        return jacobian[np.ix_(self.kept, self.kept)]
 
     def moments(self, problem: Problem, unknowns: np.ndarray, periods: int) -> tuple[float, float]:
         """Return the holding moments on wheels 3 and 2 over R_bi, in F_st."""

@@ -18,7 +18,9 @@ from gearmesh.errors import NoOrbit
 from gearmesh.model.problem import Problem
 from gearmesh.solvers.reduced import curves
 from gearmesh.solvers.reduced.curves import LARGEST_RESIDUAL, ROUNDED, is_clear
-from gearmesh.solvers.reduced.period_map import Passage, Statement, passage_of, statement, trace
+from gearmesh.solvers.reduced.deviations import SIZE
+from gearmesh.solvers.reduced.period_map import STATUSES, Statement, passage_of, statement, trace
+from gearmesh.solvers.reduced.variational import COMPLETE
 
 Family = Callable[..., Problem]
 """The problem at the values of the parameters."""
@@ -29,7 +31,7 @@ _PLACES = 64
 _MOST_STEPS = 64  # in one call of the compiled code
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Point:
     """A point of a curve of orbits.
 
@@ -46,8 +48,9 @@ class Point:
         bordered by the tangent.
     made : callable
         Returns the orbit.
-    passage : Passage, optional
-        The motion over the period of the orbit, if compiled code found it.
+    found : tuple of two ndarray, optional
+        The row of `gearmesh.solvers.reduced.curves` and the events of the motion over the period,
+        if compiled code found it.
     """
 
     place: np.ndarray
@@ -55,7 +58,7 @@ class Point:
     tangent: np.ndarray
     determinant: float
     made: Callable[[], Shot] = field(repr=False)
-    passage: Passage | None = field(default=None, repr=False)
+    found: tuple[np.ndarray, np.ndarray] | None = field(default=None, repr=False)
 
     @cached_property
     def orbit(self) -> Shot:
@@ -69,7 +72,8 @@ class Point:
 
     def reversed(self) -> "Point":
         """Return the same point, seen in the other direction along the curve."""
-        return replace(self, tangent=-self.tangent, determinant=-self.determinant)
+        back = -self.tangent, -self.determinant
+        return Point(self.place, self.values, *back, self.made, self.found)
 
 
 @dataclass(frozen=True)
@@ -169,30 +173,34 @@ class Curve:
     ) -> Point:
         """Return the point that compiled code finds."""
         points, events, _ = trace(compiled[1], place, normal, self.units[0], corrections)
-        point, moved = self._found(compiled, points[0], events[0])
-        if moved.status != "complete":
-            raise NoOrbit(f"the motion ends with {moved.status}")
-        residual = np.abs(moved.end - point.place[:4]).max()
+        row = points[0]
+        if row[curves.OUTCOME] != COMPLETE:
+            raise NoOrbit(f"the motion ends with {STATUSES[int(row[curves.OUTCOME])]}")
+        residual = np.abs(row[curves.END : curves.JACOBIAN] - row[:SIZE]).max()
         if corrections and not residual < LARGEST_RESIDUAL:
             raise NoOrbit(f"the corrector stops at a residual of {residual:.1e}")
-        return point
+        return self._found(compiled, row, events[0])
 
     def _found(
-        self, compiled: tuple[Problem, Statement], point: np.ndarray, events: np.ndarray
-    ) -> tuple[Point, Passage]:
-        """Return a point of the compiled code, and its motion."""
-        nu = float(point[4]) * self.units[0]
-        problem, stated = compiled
-        moved = passage_of(stated, self.units[0], point, events)
-        found = Point(
-            point[: curves.DIMENSIONS],
+        self, compiled: tuple[Problem, Statement], row: np.ndarray, events: np.ndarray
+    ) -> Point:
+        """Return a point of the compiled code."""
+        events = events[: int(row[curves.N_EVENTS])]
+        nu = float(row[SIZE]) * self.units[0]
+
+        def made() -> Orbit:
+            problem, stated = compiled
+            moved = passage_of(stated, self.units[0], row, events)
+            return Orbit(replace(problem, nu=nu), self.periods, row[:SIZE], moved)
+
+        return Point(
+            row[: curves.DIMENSIONS],
             (nu,),
-            point[curves.TANGENT : curves.DETERMINANT],
-            float(point[curves.DETERMINANT]),
-            lambda: Orbit(replace(problem, nu=nu), self.periods, point[:4], moved),
-            moved,
+            row[curves.TANGENT : curves.DETERMINANT],
+            float(row[curves.DETERMINANT]),
+            made,
+            (row, events),
         )
-        return found, moved
 
     def _with_tangent(self, place: np.ndarray, orbit: Shot, along: np.ndarray) -> Point:
         gradients = self._gradients(place, orbit)
@@ -219,6 +227,18 @@ class Curve:
         along = np.append((there - here) / _DIFFERENCE, point.tangent[here.size :])
         along /= np.linalg.norm(along)
         return other, other.point(np.append(here, point.place[here.size :]), along, along)
+
+    def between(self, left: Point, right: Point, normal: np.ndarray, share: float) -> Point:
+        """Return the point of the curve at a share of the distance between two others.
+
+        The distance is measured along `normal`, with which both tangents make a small angle. The
+        cubic polynomial through both points with their tangents predicts the place.
+        """
+        length = float(normal @ (right.place - left.place))
+        ahead, behind = (length / (one.tangent @ normal) * one.tangent for one in (left, right))
+        apart = right.place - left.place
+        bend = share * (1.0 - share) * ((1.0 - share) * (ahead - apart) - share * (behind - apart))
+        return self.point(left.place + share * apart + bend, normal, left.tangent)
 
     def step(self, point: Point, length: float) -> Point:
         """Return the point one step ahead along the tangent."""
@@ -256,9 +276,7 @@ class Curve:
         )
         if len(points) == 1:
             raise NoOrbit("it bends too sharply")
-        return [
-            self._found(compiled, points[i], events[i])[0] for i in range(1, len(points))
-        ], length
+        return [self._found(compiled, points[i], events[i]) for i in range(1, len(points))], length
 
     def _step_on(self, point: Point, length: float) -> tuple[Point, float]:
         """Return the next point after `point` and the length of the step that reaches it."""

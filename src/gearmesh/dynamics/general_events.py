@@ -14,7 +14,7 @@ from scipy.optimize import brentq
 from gearmesh.model.mesh import mesh_stiffness
 from gearmesh.model.problem import Problem
 from gearmesh.model.segments import segments
-from gearmesh.solvers.full.runs import Step
+from gearmesh.solvers.full.measures import Step
 from gearmesh.solvers.reduced.variational import (
     AFTER,
     BEFORE,

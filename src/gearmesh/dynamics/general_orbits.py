@@ -10,7 +10,7 @@ a grazing, or where friction begins to stick, steps are smaller and the rounding
 import math
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
-from functools import cached_property
+from functools import cached_property, partial
 from itertools import chain, pairwise
 
 import numpy as np
@@ -22,24 +22,22 @@ from gearmesh.dynamics.charts import (
     state_at_place,
     with_moments,
 )
+from gearmesh.dynamics.differences import LARGEST_STEP, slope
 from gearmesh.dynamics.general_events import gap_extrema, stiffness_jumps
 from gearmesh.dynamics.orbits import TimeCourse, sorted_multipliers
 from gearmesh.errors import NoOrbit
 from gearmesh.model.contact import regime_of
 from gearmesh.model.problem import Problem, State
-from gearmesh.solvers.full.runs import Propagation, Step, integrate, steps_of
+from gearmesh.solvers.full.measures import Step
+from gearmesh.solvers.full.runs import Propagation, integrate, steps_of
 from gearmesh.solvers.response import Response
 
 _TOLERANCE = 1e-14
-_DIFFERENCE = 1e-3
-_SHARES = (1.0, 0.1, 0.01, 0.001)
-_SMOOTH = 1e-8  # difference between orders without a kink
-_SIXTH = np.array([-1.0, 9.0, -45.0, 45.0, -9.0, 1.0]) / 60.0
-_FOURTH = np.array([0.0, 1.0, -8.0, 8.0, -1.0, 0.0]) / 12.0
 SAME = 1e-8
 """Distance between states that count as the same, and between numbers that count as whole."""
 
 _LEAST_GROWTH = 1e-7
+_RESOLVED = 1e-4  # least multiplier that differences over the whole period resolve to 1e-4
 
 
 @dataclass(frozen=True)
@@ -115,6 +113,11 @@ class GeneralOrbit:
         return float(self.response.strobe_v[0])
 
     @property
+    def strobes(self) -> np.ndarray:
+        """Y and y' at the initial phase of each mesh period, shape (periods, 2)."""
+        return np.column_stack([self.response.strobe_y, self.response.strobe_v])[:-1]
+
+    @property
     def y_max(self) -> float:
         """Greatest y."""
         return self.response.y_max
@@ -163,18 +166,18 @@ class GeneralOrbit:
     @cached_property
     def jacobian(self) -> np.ndarray:
         """Jacobian of the coordinates and rates over the period, shape (2 n, 2 n)."""
-        return self._jacobian(_DIFFERENCE)
+        return self._jacobian(LARGEST_STEP)
 
     @cached_property
     def gradient(self) -> np.ndarray:
         """Jacobian of the defect in the state, shape (k, k)."""
         if self.chart.rotation == HELD:
             # Newton's method and tangents need the effect of the moments to a few digits only.
-            away = _DIFFERENCE * np.eye(self.state.size)[0]
+            away = LARGEST_STEP * np.eye(self.state.size)[0]
             ahead, behind = (
                 self.shot(self.problem, self.state + one, self.periods).end for one in (away, -away)
             )
-            pushed = (ahead - behind) / (2.0 * _DIFFERENCE)
+            pushed = (ahead - behind) / (2.0 * LARGEST_STEP)
             others = self.jacobian[:, 1:] - np.eye(self.end.size)[:, 1:]
             return np.column_stack([pushed, others])
         return self.monodromy - np.eye(self.state.size)
@@ -197,17 +200,51 @@ class GeneralOrbit:
     @property
     def multiplier_error(self) -> float:
         """Change of the multipliers with differences of a quarter of the largest step."""
-        finer = self.chart.monodromy(self._jacobian(0.25 * _DIFFERENCE))
+        finer = self.chart.monodromy(self._jacobian(0.25 * LARGEST_STEP))
         others = np.linalg.eigvals(finer)
         return max(float(np.abs(others - one).min()) for one in self.multipliers)
 
+    @cached_property
+    def growth(self) -> float:
+        """Logarithm of the greatest growth of a deviation in a mesh period.
+
+        Small multipliers of long periods come from the factors, each of which has its own error.
+        """
+        largest, lost = float(abs(self.multipliers[0])), 0.0
+        if largest < _RESOLVED:
+            whole = np.eye(len(self.monodromy))
+            for factor in self.factors:
+                whole = factor @ whole
+                size = float(np.abs(whole).max())
+                whole, lost = whole / size, lost + math.log(size)
+            largest = float(np.abs(np.linalg.eigvals(whole)).max())
+        return (math.log(largest) + lost) / self.periods
+
+    @property
+    def factors(self) -> list[np.ndarray]:
+        """Jacobians of the mesh periods; `monodromy` is the product of them, the last one first.
+
+        The first and the last one are without the mean rotation at the start and at the end.
+        """
+        found, place, motions = [], self.start, ends(self.held, self.periods)
+        for n in range(self.periods):
+            end = partial(motions, first=n, last=n + 1)
+            found.append(np.array([slope(end, place, one) for one in np.eye(place.size)]).T)
+            place = end(place)
+        kept = self.chart.kept
+        found[0] = found[0][:, kept]
+        found[-1] = found[-1][kept]
+        return found
+
     def _jacobian(self, step: float) -> np.ndarray:
         end = ends(self.held, self.periods)
-        return np.array([_slope(end, self.start, one, step) for one in np.eye(self.end.size)]).T
+        return np.array([slope(end, self.start, one, step) for one in np.eye(self.end.size)]).T
 
     @property
     def undamped(self) -> bool:
-        """Whether no damping of the mesh acts along the orbit."""
+        """Whether no damping of the mesh or of the rotations acts along the orbit."""
+        if any(self.problem.terms.torsional_damping):
+            return False
         lost = self.response.contact_loss_fraction
         return not (
             (lost > 0.0 and any(self.problem.lubricant))
@@ -263,21 +300,13 @@ class GeneralOrbit:
         return shot_from(problem, state, periods, self.angle)
 
     def at_phase(self, phase: float) -> "GeneralOrbit":
-        """Return the orbit with its state taken at another mesh phase.
-
-        Raises
-        ------
-        NoOrbit
-            If mesh periods differ: then the phase fixes the angles of the shafts.
-        """
-        share = (phase - self.problem.initial_phase) % 1.0
-        if share == 0.0:
+        """Return the orbit with its state taken at another mesh phase."""
+        if phase == self.problem.initial_phase:
             return self
-        if self.repeats_after > 1:
-            raise NoOrbit("mesh periods differ, so the orbit stays at its initial phase")
-        place = ends(self.held, 1, share)(self.start)
+        place = moved_to_phase(self.held, self.start, phase)
+        state = self.chart.unknowns(place, float(self.state[0]))
         problem = replace(self.problem, initial_phase=phase)
-        return shot_from(problem, self.chart.unknowns(place), self.periods, float(place[0]))
+        return shot_from(problem, state, self.periods, float(place[0]))
 
 
 def common_period(problem: Problem) -> int:
@@ -303,29 +332,6 @@ def common_period(problem: Problem) -> int:
     )
 
 
-def _slope(
-    function: Callable[[np.ndarray], np.ndarray],
-    place: np.ndarray,
-    along: np.ndarray,
-    largest: float = _DIFFERENCE,
-) -> np.ndarray:
-    """Return the derivative of a function along a direction, by differences of sixth order.
-
-    Differences of fourth order serve as a check: they deviate if the function has a kink nearby.
-    The step is then reduced, starting from `largest`.
-    """
-    best = np.inf
-    for step in largest * np.array(_SHARES):
-        sides = [function(place + n * step * along) for n in (-3, -2, -1, 1, 2, 3)]
-        sixth, fourth = (np.dot(weights, sides) / step for weights in (_SIXTH, _FOURTH))
-        error = float(np.abs(sixth - fourth).max())
-        if error < best:
-            found, best = sixth, error
-        if error < _SMOOTH:
-            break
-    return np.asarray(found)
-
-
 def shot_from(problem: Problem, state: np.ndarray, periods: int, angle: float) -> GeneralOrbit:
     """Return a motion from the unknowns of an orbit."""
     bare = replace(problem, initial_state=None)
@@ -336,9 +342,23 @@ def shot_from(problem: Problem, state: np.ndarray, periods: int, angle: float) -
 
 
 def ends(problem: Problem, periods: int, share: float = 1.0) -> Callable[..., np.ndarray]:
-    """Return a function that maps the place where a motion starts to the place where it ends."""
+    """Return a function that maps the place where a motion starts to the place where it ends.
+
+    Its further arguments are those of `Propagation.end`.
+    """
     chart, motions = chart_of(problem), Propagation(problem, periods, _TOLERANCE, share)
-    return lambda place: chart.place_of_six(motions.end(chart.six(place)))
+    return lambda place, **part: chart.place_of_six(motions.end(chart.six(place), **part))
+
+
+def moved_to_phase(problem: Problem, place: np.ndarray, phase: float) -> np.ndarray:
+    """Return the place where a motion is at another mesh phase, with the shafts as at t = 0."""
+    share = (phase - problem.initial_phase) % 1.0
+    if share > 0.0:
+        place = ends(problem, 1, share)(place)
+    common = common_period(problem)
+    if phase < problem.initial_phase and common > 1:
+        place = ends(replace(problem, initial_phase=phase), common)(place, first=1)
+    return place
 
 
 def run_of(problem: Problem, begun: State, periods: int, samples_per_period: int) -> Response:

@@ -60,21 +60,13 @@ def _settled(problem: Problem, place: np.ndarray, periods: int) -> GeneralOrbit:
     If the mean rotation has to be held, a drive corrects it after whole periods of the orbit.
     """
     chart, angle = chart_of(problem), float(place[0])
-    if chart.rotation != HELD:
-        whole = periods * math.ceil(_TRANSIENT / periods)
-        moved = shot_from(problem, chart.unknowns(place), whole, angle)
-        return shot_from(problem, chart.unknowns(moved.end), periods, angle)
-    block = periods * math.ceil(_BLOCK / periods)
-    pushed, duration = 0.0, block * problem.period
+    shortest = _BLOCK if chart.rotation == HELD else _TRANSIENT
+    block = periods * math.ceil(shortest / periods)
+    state = chart.unknowns(place)
     for _ in range(math.ceil(_TRANSIENT / block)):
-        moved = shot_from(problem, chart.unknowns(place, pushed), block, angle)
-        gained, sped = (moved.end - moved.start)[[0, chart.n]].tolist()
-        pushed -= sped * duration
-        place = moved.end.copy()
-        place[0] = angle
-        place[chart.n] = moved.start[chart.n] - gained / duration + 0.5 * sped
-    pushed *= (periods / block) ** 2
-    return shot_from(problem, chart.unknowns(place, pushed), periods, angle)
+        moved = shot_from(problem, state, block, angle)
+        state = chart.carried_on(moved.start, moved.end, float(state[0]), block * problem.period)
+    return shot_from(problem, chart.rescaled(state, block, periods), periods, angle)
 
 
 def correct(orbit: GeneralOrbit) -> GeneralOrbit:

@@ -128,6 +128,19 @@ class Orbit:
         return float(self.state[1])
 
     @property
+    def points(self) -> np.ndarray:
+        """y, y', b, b' at the initial phase of each mesh period, shape (periods, 4)."""
+        found = [self.state]
+        for _ in range(self.periods - 1):
+            found.append(passage(self.problem, found[-1]).end)
+        return np.array(found)
+
+    @property
+    def strobes(self) -> np.ndarray:
+        """Y and y' at the initial phase of each mesh period, shape (periods, 2)."""
+        return self.points[:, :2]
+
+    @property
     def defect(self) -> np.ndarray:
         """P^n(x) - x, shape (4,)."""
         return self.passage.end - self.state
@@ -161,6 +174,11 @@ class Orbit:
     def multipliers(self) -> np.ndarray:
         """Floquet multipliers, complex array of shape (4,), the largest modulus first."""
         return sorted_multipliers(np.linalg.eigvals(self.monodromy))
+
+    @property
+    def growth(self) -> float:
+        """Logarithm of the greatest growth of a deviation in a mesh period."""
+        return float(np.log(np.abs(self.multipliers[0]))) / self.periods
 
     @property
     def neutral(self) -> bool:
@@ -197,7 +215,7 @@ class Orbit:
         turns = self._turns
         return np.column_stack([turns[:, TIME], turns[:, HEIGHT], -np.sign(turns[:, AFTER])])
 
-    @property
+    @cached_property
     def gap_extrema(self) -> np.ndarray:
         """Extrema of y + s over the orbit's own period, shape (n, 3) as of `extrema`."""
         return self.extrema + np.array([0.0, self.problem.backlash, 0.0])

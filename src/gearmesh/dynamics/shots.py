@@ -52,6 +52,10 @@ class Shot(Protocol):
         """Floquet multipliers, the largest modulus first."""
 
     @property
+    def growth(self) -> float:
+        """Logarithm of the greatest growth of a deviation in a mesh period."""
+
+    @property
     def stable(self) -> bool:
         """Whether all multipliers are inside the unit circle and the orbit is not neutral."""
 
@@ -92,6 +96,10 @@ class Shot(Protocol):
         """Velocity y' at the initial phase."""
 
     @property
+    def strobes(self) -> np.ndarray:
+        """Y and y' at the initial phase of each mesh period, shape (periods, 2)."""
+
+    @property
     def residual(self) -> float:
         """Size of the defect."""
 
@@ -106,7 +114,4 @@ class Shot(Protocol):
         """Return another motion of the same kind; raises NoOrbit if it cannot be integrated."""
 
     def at_phase(self, phase: float) -> Self:
-        """Return the orbit with its state taken at another mesh phase.
-
-        This may fail if the mesh periods differ from each other.
-        """
+        """Return the orbit with its state taken at another mesh phase."""

@@ -8,6 +8,7 @@ allow two roots in between, the piece of the branch is halved until they do not.
 import operator
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
+from functools import cache
 from itertools import combinations, pairwise
 
 import numpy as np
@@ -17,7 +18,9 @@ from gearmesh.dynamics.continuation import Curve, Point
 from gearmesh.dynamics.shots import Shot
 from gearmesh.errors import NoOrbit
 from gearmesh.model.problem import Problem
-from gearmesh.solvers.reduced.period_map import Passage, segments_of
+from gearmesh.solvers.reduced.curves import DAMPING, JACOBIAN, TANGENT
+from gearmesh.solvers.reduced.deviations import DEVIATIONS, SIZE
+from gearmesh.solvers.reduced.period_map import segments_of
 from gearmesh.solvers.reduced.variational import (
     AFTER,
     BEFORE,
@@ -30,7 +33,9 @@ from gearmesh.solvers.reduced.variational import (
     VELOCITY,
 )
 
-KINDS = ("fold", "flip", "torus", "branch_point", "grazing_front", "grazing_back", "switching")
+BIFURCATIONS = ("fold", "branch_point", "flip", "torus")
+GRAZINGS = ("grazing_front", "grazing_back")
+KINDS = (*BIFURCATIONS, *GRAZINGS, "switching")
 """All kinds of special points."""
 
 Test = tuple[str, Callable[[Point], float]]
@@ -43,8 +48,8 @@ FRONT: Extrema = operator.attrgetter("extrema")
 BACK: Extrema = operator.attrgetter("gap_extrema")
 """The extrema whose height is 0 where flanks graze, on the front and on the back."""
 
-Inner = tuple[Point, Point, float]
-"""Points just inside the two ends of a piece of a branch, and their distance from the ends."""
+Beside = Callable[[Point, float], Point]
+"""`Curve.beside` of a curve, which remembers the points."""
 
 _MARGIN = 0.25
 _OFFSET = 1e-5
@@ -79,50 +84,50 @@ class SpecialPoint:
 
 
 def search(
-    curve: Curve, left: Point, right: Point, tests: list[Test], inner: Inner | None = None
+    curve: Curve, left: Point, right: Point, tests: list[Test], beside: Beside | None = None
 ) -> list[tuple[str, Point]]:
-    """Return where tests pass 0 between two neighbouring points of a curve, in their order.
-
-    `inner` is what `_inner_points` returns for them, if it is known.
-    """
-    found = _search(curve, left, right, tests, inner or _inner_points(curve, left, right))
+    """Return where tests pass 0 between two neighbouring points of a curve, in their order."""
+    found = _search(curve, left, right, tests, beside or cache(curve.beside))
     return sorted(found, key=lambda item: float(left.tangent @ item[1].place))
 
 
-def suspects(points: list[Point]) -> list[int]:
+def suspects(points: list[Point]) -> list[tuple[int, set[str]]]:
     """Return every i for which a special point may lie between point i and the next one.
 
     A piece of the branch is suspect if a test function changes sign in it. It is also suspect if a
     test function may cross 0 twice in it, that is, if its value at an end is less than `_MARGIN`
     times its change nearby. All test functions are computed for all points at once, so only the
-    suspect pieces need a closer look.
+    suspect pieces need a closer look. The kinds that may lie there are returned with each i.
     """
-    every = list(range(len(points) - 1))
-    moved = [point.passage for point in points if point.passage and len(point.passage.events)]
-    if len(moved) < len(points):
-        return every
-    heights, crossings = _event_functions(points[0].orbit.problem, moved)
-    functions = np.column_stack([*_bifurcation_functions(points, moved), *heights])
+    found = [point.found for point in points if point.found and len(point.found[1])]
+    if len(found) < len(points):
+        return [(i, set(KINDS)) for i in range(len(points) - 1)]
+    heights, velocities, crossings = _event_functions(points[0].orbit.problem, found)
+    bifurcations = _bifurcation_functions(points, np.array([row for row, _ in found]))
+    functions = np.column_stack([*bifurcations, *heights, *velocities])
+    kinds = np.array([*BIFURCATIONS, *GRAZINGS, *("switching" for _ in velocities)])
     with np.errstate(invalid="ignore"):
         change = np.abs(np.diff(functions, axis=0))
         nearby = change.copy()
         nearby[1:] = np.fmax(nearby[1:], change[:-1])
         nearby[:-1] = np.fmax(nearby[:-1], change[1:])
-        least = np.fmin(np.abs(functions[1:]), np.abs(functions[:-1]))
-        near = (functions[1:] * functions[:-1] <= 0.0) | (least < _MARGIN * nearby)
-    found = near.any(axis=1) | (np.diff(crossings) != 0)
-    return [i for i in every if found[i]]
+        size = np.abs(functions)
+        near = (functions[1:] * functions[:-1] <= 0.0) | (
+            np.fmin(size[1:], size[:-1]) < _MARGIN * nearby
+        )
+    near[:, np.isin(kinds, GRAZINGS)] |= (np.diff(crossings) != 0)[:, None]
+    return [(int(i), set(kinds[near[i]])) for i in np.flatnonzero(near.any(axis=1))]
 
 
-def _bifurcation_functions(points: list[Point], moved: list[Passage]) -> list[np.ndarray]:
+def _bifurcation_functions(points: list[Point], rows: np.ndarray) -> list[np.ndarray]:
     """Return the functions of `_bifurcation_tests`, each at all points."""
-    jacobians = np.array([one.jacobian for one in moved])
-    damped = np.array([one.damping != 0.0 for one in moved])
+    extended = rows[:, JACOBIAN:TANGENT].reshape(-1, SIZE, DEVIATIONS)
+    jacobians = np.ascontiguousarray(extended[:, :, :SIZE])
     return [
         np.array([point.slope for point in points]),
         np.array([point.determinant for point in points]),
-        np.linalg.det(jacobians + np.eye(4)),
-        np.where(damped, _pair_products(jacobians), np.nan),
+        np.linalg.det(jacobians + np.eye(SIZE)),
+        np.where(rows[:, DAMPING] != 0.0, _pair_products(jacobians), np.nan),
     ]
 
 
@@ -131,8 +136,9 @@ def _pair_products(jacobians: np.ndarray) -> np.ndarray:
 
     The sums mu_1 mu_2 + mu_3 mu_4, ... are the roots of the resolvent cubic of the polynomial.
     """
-    powers = [jacobians, *(np.linalg.matrix_power(jacobians, k) for k in (2, 3))]
-    one, two, three = (np.trace(power, axis1=1, axis2=2) for power in powers)
+    square = jacobians @ jacobians
+    one, two = (np.einsum("kii->k", power) for power in (jacobians, square))
+    three = np.einsum("kij,kji->k", square, jacobians)
     e_2 = (one**2 - two) / 2.0
     e_3 = (one**3 - 3.0 * one * two + 2.0 * three) / 6.0
     e_4 = np.linalg.det(jacobians)
@@ -141,46 +147,52 @@ def _pair_products(jacobians: np.ndarray) -> np.ndarray:
     return cubic - (one**2 * e_4 + e_3**2 - 4.0 * e_2 * e_4)
 
 
-def _event_functions(problem: Problem, moved: list[Passage]) -> tuple[list[np.ndarray], np.ndarray]:
+def _event_functions(
+    problem: Problem, found: list[tuple[np.ndarray, np.ndarray]]
+) -> tuple[list[np.ndarray], np.ndarray, np.ndarray]:
     """Return functions that pass 0 where events appear or vanish, each at all points.
 
     The first functions are the least distances between extrema of y and the ends of regimes. The
     others are the velocities where C(t) jumps. Such a velocity counts only if y'' changes sign at
-    the jump, at this point or a neighbouring one. The second result is the number of changes of
+    the jump, at this point or a neighbouring one. The last result is the number of changes of
     regime.
     """
     stiffness = segments_of(problem)[:, 1]
-    events = np.concatenate([one.events for one in moved])
-    first = np.cumsum([0, *(len(one.events) for one in moved[:-1])])
+    events = np.concatenate([one for _, one in found])
+    first = np.cumsum([0, *(len(one) for _, one in found[:-1])])
     kind, height = events[:, KIND], events[:, HEIGHT]
     jumps = (kind == SWITCH) & (stiffness != np.roll(stiffness, 1))[events[:, SEGMENT].astype(int)]
     margins = [
         np.minimum.reduceat(np.where(kind == TURN, np.abs(height - level), np.inf), first)
         for level in (0.0, -problem.backlash)
     ]
-    velocities = events[jumps, VELOCITY].reshape(len(moved), -1)
+    velocities = events[jumps, VELOCITY].reshape(len(found), -1)
     turning = (events[jumps, BEFORE] * events[jumps, AFTER] < 0.0).reshape(velocities.shape)
     beside = turning.copy()
     beside[1:] |= turning[:-1]
     beside[:-1] |= turning[1:]
     velocities[~beside] = np.nan
-    return [*margins, *velocities.T], np.add.reduceat(kind == CROSSING, first, dtype=int)
+    return margins, velocities.T, np.add.reduceat(kind == CROSSING, first, dtype=int)
 
 
-def special_points(curve: Curve, left: Point, right: Point) -> list[tuple[str, Point]]:
-    """Return the special points between two neighbouring points of a branch, in their order.
+def special_points(
+    curve: Curve, left: Point, right: Point, kinds: set[str]
+) -> list[tuple[str, Point]]:
+    """Return the special points of some kinds between neighbouring points, in their order.
 
     Multipliers have a root singularity where the orbit grazes, so they are tested in the pieces
-    between the grazings and not across them.
+    between the grazings and not across them. Wherever an event is found, all of them are tested.
     """
-    inner = _inner_points(curve, left, right)
-    events = _once(search(curve, left, right, _event_tests(left, right), inner))
+    beside = cache(curve.beside)
+    tests = [test for test in _event_tests(left, right) if test[0] in kinds]
+    events = _once(search(curve, left, right, tests, beside))
+    tests = [test for test in _bifurcation_tests() if events or test[0] in kinds]
     ends = [left, *(point for _, point in events), right]
     bifurcations = [
         found
         for start, end in pairwise(ends)
         if _length(start, end) > _NARROWEST_PIECE
-        for found in search(curve, start, end, _bifurcation_tests(), None if events else inner)
+        for found in search(curve, start, end, tests, beside)
     ]
     order = [*events, *bifurcations]
     return sorted(order, key=lambda item: float(left.tangent @ item[1].place))
@@ -198,24 +210,17 @@ def _once(events: list[tuple[str, Point]]) -> list[tuple[str, Point]]:
     return kept
 
 
-def _inner_points(curve: Curve, left: Point, right: Point) -> Inner:
-    """Return an offset, and the points that far inside the two ends: they give the slopes there."""
-    offset = min(_OFFSET, 0.1 * _length(left, right))
-    return curve.beside(left, offset), curve.beside(right, -offset), offset
-
-
 def _search(
-    curve: Curve, left: Point, right: Point, tests: list[Test], inner: Inner
+    curve: Curve, left: Point, right: Point, tests: list[Test], beside: Beside
 ) -> Iterator[tuple[str, Point]]:
-    ahead, behind, offset = inner
+    offset = min(_OFFSET, 0.1 * _length(left, right))
     for kind, test in tests:
-        pieces = [(left, ahead, behind, right, offset)]
+        pieces = [(left, right)]
         while pieces:
-            start, near, far, end, offset = pieces.pop()
+            start, end = pieces.pop()
             before, after = test(start), test(end)
             if np.isnan(before) or np.isnan(after):
                 continue
-            length = _length(start, end)
             if (before < 0.0) != (after < 0.0):
                 try:
                     point = _locate(curve, start, end, test)
@@ -225,13 +230,9 @@ def _search(
                     raise
                 if _confirmed(kind, test, start, point, end):
                     yield kind, point
-            elif _may_dip(before, test(near), test(far), after, length, offset):
-                middle = curve.step(start, 0.5 * length)
-                below, above = curve.beside(middle, -offset), curve.beside(middle, offset)
-                pieces += [
-                    (start, near, below, middle, offset),
-                    (middle, above, far, end, offset),
-                ]
+            elif _may_dip(test, (start, before), (end, after), beside, offset):
+                middle = curve.between(start, end, start.tangent, 0.5)
+                pieces += [(start, middle), (middle, end)]
 
 
 def _length(left: Point, right: Point) -> float:
@@ -239,28 +240,45 @@ def _length(left: Point, right: Point) -> float:
 
 
 def _may_dip(
-    before: float, ahead: float, behind: float, after: float, length: float, offset: float
+    test: Callable[[Point], float],
+    left: tuple[Point, float],
+    right: tuple[Point, float],
+    beside: Beside,
+    offset: float,
 ) -> bool:
     """Return whether a function of one sign at both ends may pass 0 in between.
 
-    Where it approaches 0 at both ends, the tangents there bound a convex function from below.
+    Where it approaches 0 at both ends, the tangents there bound a convex function from below. The
+    slopes are those between the ends, given with their values, and points beside them.
     """
-    sign = -1.0 if before < 0.0 else 1.0
-    down, up = sign * (ahead - before) / offset, sign * (after - behind) / offset
-    if length < _NARROWEST or not (down < 0.0 < up):
+    (start, before), (end, after) = left, right
+    length, sign = _length(start, end), -1.0 if before < 0.0 else 1.0
+    if length < _NARROWEST:
+        return False
+    down = sign * (test(beside(start, offset)) - before) / offset
+    if not down < 0.0:
+        return False
+    up = sign * (after - test(beside(end, -offset))) / offset
+    if not up > 0.0:
         return False
     where = (sign * (after - before) - up * length) / (down - up)
     return bool(sign * before + down * where < 0.0)
 
 
 def _locate(curve: Curve, left: Point, right: Point, test: Callable[[Point], float]) -> Point:
-    """Return the point between two others where a test function passes 0."""
+    """Return the point between two others where a test function passes 0.
+
+    Each point is predicted from the two nearest ones that are known.
+    """
+    known = {0.0: left, 1.0: right}
 
     def at(share: float) -> Point:
-        if share in (0.0, 1.0):
-            return right if share else left
-        place = left.place + share * (right.place - left.place)
-        return curve.point(place, left.tangent, left.tangent)
+        if share not in known:
+            low = max(other for other in known if other < share)
+            high = min(other for other in known if other > share)
+            part = (share - low) / (high - low)
+            known[share] = curve.between(known[low], known[high], left.tangent, part)
+        return known[share]
 
     return at(brentq(lambda share: test(at(share)), 0.0, 1.0, xtol=_ROOT_WIDTH))
 
@@ -349,14 +367,14 @@ def _height(extrema: Extrema, phase: float, kind: float) -> Callable[[Point], fl
     """Return the test of the extremum of a kind near a phase: its height."""
 
     def height(point: Point) -> float:
-        orbit = point.orbit
-        found = extrema(orbit)
-        same = found[found[:, 2] == kind]
-        away = same[:, 0] / orbit.problem.period - phase
-        away = np.abs(away - orbit.periods * np.round(away / orbit.periods))
-        if not away.size or away.min() > _SAME_PHASE:
-            return float("nan")
-        return float(same[np.argmin(away), 1])
+        orbit, best = point.orbit, _SAME_PHASE
+        found = float("nan")
+        for time, y, kind_there in extrema(orbit).tolist():
+            away = time / orbit.problem.period - phase
+            away = abs(away - orbit.periods * round(away / orbit.periods))
+            if kind_there == kind and away <= best:
+                found, best = y, away
+        return found
 
     return height
 

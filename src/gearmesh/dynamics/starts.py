@@ -46,6 +46,12 @@ def initial_coordinates(problem: Problem) -> np.ndarray:
     return coordinates(problem.initial_state or state_at(problem))
 
 
+def initial_states(problem: Problem, y: np.ndarray, v: np.ndarray) -> np.ndarray:
+    """Return the states of a grid of y and y' with the bodies in equilibrium under F_st."""
+    rest = -2.0 / problem.bearing_stiffness
+    return np.array([(height, rate, rest, 0.0) for height, rate in product(y, v)])
+
+
 def linear_orbit(problem: Problem) -> np.ndarray:
     """Return the state (y, y', b, b') of the periodic motion that never loses contact.
 

@@ -7,9 +7,9 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
+from gearmesh.identification.estimation.wording import statements, weight_of_claims
 from gearmesh.identification.factors import FACTORS
-from gearmesh.identification.store import Samples
-from gearmesh.identification.wording import statements, weight_of_claims
+from gearmesh.identification.sampling.store import Samples
 from gearmesh.reproduction.claims import Claim
 from gearmesh.reproduction.figures import palette
 from gearmesh.reproduction.figures.canvas import WIDTH, styled

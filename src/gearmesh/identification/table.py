@@ -19,7 +19,7 @@ HEADER = """\
 _SHORT = 90
 
 Findings = dict[str, Any]
-"""See `gearmesh.identification.findings.findings`."""
+"""See `gearmesh.identification.estimation.findings.findings`."""
 
 
 class _Dumper(yaml.SafeDumper):

@@ -8,11 +8,11 @@ import xarray as xr
 from gearmesh.dynamics.attraction import basins as dynamics
 from gearmesh.dynamics.attraction.attractors import Attractor
 from gearmesh.dynamics.attraction.basins import TRANSIENT
-from gearmesh.dynamics.starts import initial_coordinates
+from gearmesh.dynamics.attraction.maps import map_of
 from gearmesh.errors import InputError
 from gearmesh.interface.lengths import with_lengths
 from gearmesh.interface.orbits import REGIMES
-from gearmesh.interface.reduced import reduced_problem
+from gearmesh.interface.periodic import periodic_problem
 from gearmesh.interface.statements import (
     Start,
     check_whole,
@@ -79,16 +79,17 @@ def attractors(
     >>> found.kind.values.tolist()
     ['periodic']
     """
-    problem = reduced_problem(pair, variant, nu)
+    problem = periodic_problem(pair, variant, nu)
     check_whole("revolutions", revolutions, 1, _MOST_REVOLUTIONS)
+    moved = map_of(problem)
     if starts is None:
-        states = np.array([initial_coordinates(problem), *dynamics.grid(problem)])
+        states = np.array([moved.start(problem), *dynamics.grid(problem)])
     else:
         begun = [with_settings(pair, start) for start in _sequence("starts", starts)]
         runs = [one.problem(read_variant(variant), problem.nu) for one in begun]
-        states = np.array([initial_coordinates(run) for run in runs])
+        states = np.array([moved.start(run) for run in runs])
     found = dynamics.reached(problem, states, revolutions)
-    dataset = _described(found.attractors, pair)
+    dataset = _described(found.attractors, pair, len(moved.weights))
     counts = np.bincount(found.labels, minlength=len(found.attractors))
     stated = {"units": "1", "long_name": "number of initial conditions that lead there"}
     dataset["starts"] = ("attractor", counts, stated)
@@ -139,14 +140,14 @@ def basins(
     >>> found.reached.shape
     (1, 2, 2)
     """
-    problem = reduced_problem(pair, variant, nu)
+    problem = periodic_problem(pair, variant, nu)
     check_whole("revolutions", revolutions, 1, _MOST_REVOLUTIONS)
     heights, rates = (
         _once(name, read_lengths(pair, name, values)) for name, values in (("y", y), ("v", v))
     )
     phases = _once("phase", _phases(pair, phase))
     found = dynamics.basins(problem, heights, rates, phases.tolist(), revolutions)
-    dataset = _described(found.attractors, pair)
+    dataset = _described(found.attractors, pair, len(map_of(problem).weights))
     for name, values, what in zip(
         ("share", "share_low", "share_high"),
         found.shares.T,
@@ -189,7 +190,7 @@ def _phases(pair: Pair, phase: object) -> np.ndarray:
     return np.array([pair.replace(initial_phase=one).initial_phase for one in several])
 
 
-def _described(found: Sequence[Attractor], pair: Pair) -> xr.Dataset:
+def _described(found: Sequence[Attractor], pair: Pair, multipliers: int) -> xr.Dataset:
     """Return what is known of each attractor."""
     orbits = [one.orbit for one in found]
     lengths = {
@@ -202,7 +203,7 @@ def _described(found: Sequence[Attractor], pair: Pair) -> xr.Dataset:
         )
     }
     dataset = with_lengths(lengths, pair)
-    for name, values, what in (
+    for name, numbers, what in (
         (
             "periods",
             [orbit.periods if orbit else 0 for orbit in orbits],
@@ -219,11 +220,11 @@ def _described(found: Sequence[Attractor], pair: Pair) -> xr.Dataset:
             "mesh periods in which a deviation falls by e",
         ),
     ):
-        dataset[name] = ("attractor", values, {"units": "1", "long_name": what})
-    nothing = np.full(4, np.nan, complex)
+        dataset[name] = ("attractor", numbers, {"units": "1", "long_name": what})
+    nothing = np.full(multipliers, np.nan, complex)
     stated = {"units": "1", "long_name": "Floquet multipliers"}
-    multipliers = [orbit.multipliers if orbit else nothing for orbit in orbits]
-    dataset["multipliers"] = (("attractor", "multiplier"), np.array(multipliers), stated)
+    values = np.array([orbit.multipliers if orbit else nothing for orbit in orbits])
+    dataset["multipliers"] = (("attractor", "multiplier"), values, stated)
     for name, texts, what in (
         ("label", [one.label for one in found], "name of the attractor in every dataset"),
         ("kind", [one.kind for one in found], "kind of motion"),

@@ -6,7 +6,7 @@ import numpy as np
 import xarray as xr
 
 from gearmesh.dynamics.attraction.lyapunov import spectrum_of
-from gearmesh.interface.reduced import reduced_problem
+from gearmesh.interface.periodic import periodic_problem
 from gearmesh.interface.statements import (
     Start,
     check_whole,
@@ -67,7 +67,7 @@ def lyapunov_spectrum(
     check_whole("periods", periods, 8, _MOST_PERIODS)
     check_whole("transient", transient, 0, _MOST_PERIODS)
     begun = with_settings(pair, start)
-    problems = [reduced_problem(begun, variant, one) for one in nus]
+    problems = [periodic_problem(begun, variant, one) for one in nus]
     spectra = [spectrum_of(one, periods, transient) for one in problems]
     dataset = xr.Dataset()
     for name, rates, what in (

@@ -24,6 +24,7 @@ from gearmesh.model.problem import State
 from gearmesh.model.variants import Variant
 from gearmesh.solvers.reduced.runs import is_reducible
 from gearmesh.study.pair import Pair
+from gearmesh.study.speeds import check_constant_speed
 
 REGIMES = {
     NORMAL_MESH: "normal_mesh",
@@ -202,6 +203,7 @@ def find_orbit(
     if isinstance(periods, bool) or not isinstance(periods, int) or not 1 <= periods <= 1000:
         raise InputError(f"periods: found {periods!r}; allowed is a whole number from 1 to 1000")
     chosen, frequency = read_variant(variant), read_frequency(nu, pair)
+    check_constant_speed(pair, "an orbit")
     problem = pair.problem(chosen, frequency)
     begun = None
     if isinstance(start, Orbit):

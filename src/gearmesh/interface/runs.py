@@ -24,7 +24,7 @@ from gearmesh.solvers import simulation
 from gearmesh.study.alternatives import DECLARED
 from gearmesh.study.cases import Case
 from gearmesh.study.pair import Pair
-from gearmesh.study.speeds import is_speed
+from gearmesh.study.speeds import check_constant_speed, is_speed
 
 
 def simulate(
@@ -47,7 +47,8 @@ def simulate(
     variant : str or Variant
         Which damping terms act where, as ``"c-lubricant"`` (``gearmesh variants`` lists all).
     nu : float or str
-        Mesh frequency ν_s = ω_c/Ω_s, or the speed of wheel 3, as ``"3000 rpm"``.
+        Mesh frequency ν_s = ω_c/Ω_s, or the speed of wheel 3, as ``"3000 rpm"``. It is that at the
+        start if the pair states `final_nu` or `final_speed`, the end of a speed ramp.
     revolutions, kept, samples_per_period : int, optional
         Revolutions that are run, how many of the last are kept, and samples of the time course
         in a mesh period; by default those of the pair (5, 1 and 256 in the paper).
@@ -63,7 +64,9 @@ def simulate(
     xarray.Dataset
         The variables of a case file. The time course has the coordinate ``time`` (s); lengths are
         in mm and, with ``_rel`` appended to the name, in static deflections. `status` is 0 (ok), or
-        the reason why the run could not be integrated.
+        the reason why the run could not be integrated. A speed ramp has the coordinates ``nu`` and
+        ``speed`` (rpm) over ``time``, and `period_y_max` and `period_y_min` over the kept mesh
+        periods with ``period_nu`` and ``period_speed``.
 
     Raises
     ------
@@ -158,6 +161,8 @@ def sweep(
         pair.replace(**dict(zip(over, values, strict=True)))
         for values in itertools.product(*over.values())
     ]
+    for one in (pair, *pairs):
+        check_constant_speed(one, "each run of a sweep")
     _check_speeds(nu, [pair, *pairs])
     order = sorted(nus, reverse=direction == "down")
     places = list(itertools.product(chosen, pairs))

@@ -15,6 +15,7 @@ from gearmesh.interface.statements import read_frequencies, read_variant, with_s
 from gearmesh.model.variants import Variant
 from gearmesh.study.cases import Case
 from gearmesh.study.pair import Pair
+from gearmesh.study.speeds import check_constant_speed
 
 _SPECTRA = {
     field.name: field
@@ -40,7 +41,8 @@ def spectrum(run: xr.Dataset, *quantities: str) -> xr.Dataset:
         Each quantity over ``order``, the multiple of the mesh frequency, in its own unit: the mean
         at order 0, amplitudes of cosines elsewhere. `shaft_order` is the multiple of the speed of
         wheel 3 and `frequency` is in Hz. The kept revolutions are taken as one period, so n of
-        them resolve 1/n of a shaft order.
+        them resolve 1/n of a shaft order. In a speed ramp the samples are equally spaced in the
+        angle of the wheels, so the orders hold, and `frequency` belongs to the mean speed.
 
     Raises
     ------
@@ -65,7 +67,8 @@ def spectrum(run: xr.Dataset, *quantities: str) -> xr.Dataset:
     size = run.sizes[dimension]
     teeth = np.ravel(json.loads(run.attrs["parameters"])["teeth"])[0]
     step, period = float(run["time"][1] - run["time"][0]), float(run["mesh_period"])
-    order = np.arange(size // 2 + 1) / round(size * step / period)
+    periods = run.sizes.get("period") or round(size * step / period)
+    order = np.arange(size // 2 + 1) / periods
     found = xr.Dataset(coords=_orders(order, order / period, teeth))
     for name in quantities:
         stated = {**run[name].attrs, "long_name": f"amplitude: {run[name].attrs['long_name']}"}
@@ -115,6 +118,7 @@ def campbell(
     """
     if direction not in (None, "up", "down"):
         raise InputError(f"direction: found {direction!r}; allowed are 'up', 'down' and None")
+    check_constant_speed(pair, "a map over speeds")
     chosen, nus = read_variant(variant), sorted(read_frequencies(nu, pair))
     pair = with_settings(pair, revolutions=revolutions, kept_revolutions=kept)
     if direction == "down":

@@ -304,7 +304,7 @@ def static_equilibrium(problem: Problem, y: float = 1.0) -> tuple[np.ndarray, np
     compliance_3, compliance_2 = _compliances(problem)
     q[Y_3], q[Y_2] = -compliance_3, compliance_2
     v = np.zeros(6)
-    _rotate_to(problem, y, q, v)
+    _rotate_to(problem, y, q)
     return q, v
 
 
@@ -314,15 +314,16 @@ def _compliances(problem: Problem) -> tuple[float, float]:
     return 1.0 / wheel_3.bearing_stiffness[0], 1.0 / wheel_2.bearing_stiffness[0]
 
 
-def _rotate_to(problem: Problem, y: float, q: np.ndarray, v: np.ndarray) -> None:
+def _rotate_to(problem: Problem, y: float, q: np.ndarray) -> None:
     """Turn both wheels alike until the relative motion is `y`."""
-    # A contraction by the factor e / R_b.
-    for _ in range(100):
-        now, _ = relative_motion(problem, problem.start_time, q, v)
-        if now == y:
-            break
-        q[ROTATION_3] += 0.5 * (y - now)
-        q[ROTATION_2] = q[ROTATION_3]
+    # A contraction by the factor e / R_b. In the end, rounding may let two values take turns.
+    for _ in range(50):
+        before = q[ROTATION_3]
+        for _ in range(2):
+            q[ROTATION_3] += 0.5 * (y - displacement(problem, problem.start_time, q))
+            q[ROTATION_2] = q[ROTATION_3]
+        if q[ROTATION_3] == before:
+            return
 
 
 def state_at(problem: Problem, y: float = 1.0, v: float = 0.0) -> State:
@@ -365,5 +366,5 @@ def start(problem: Problem) -> tuple[np.ndarray, np.ndarray]:
     q[Y_3], q[Y_2] = share_3 * state.b, (share_3 - 1.0) * state.b
     v[Y_3], v[Y_2] = share_3 * state.b_rate, (share_3 - 1.0) * state.b_rate
     v[[ROTATION_3, ROTATION_2]] = 0.5 * (state.v - state.b_rate)
-    _rotate_to(problem, state.y, q, v)
+    _rotate_to(problem, state.y, q)
     return q, v

@@ -180,6 +180,10 @@ class Problem:
         nothing, for a run that only lets a transient die out.
     initial_state : State, optional
         Initial condition, if it is not rest in static equilibrium.
+    final_nu : float, optional
+        Mesh frequency at the end of the run, if the speed changes linearly with time. `nu` is then
+        the mesh frequency at the start. The functions of `gearmesh.model` that take a time hold for
+        a constant speed; `gearmesh.model.speeds` states how the mesh turns otherwise.
     wheels : tuple of two Wheel, optional
         Wheels 3 and 2 if they are not equal, or their bearings are not the same in y and z. The
         fields above then hold the values of wheel 3 along the mesh line.
@@ -210,6 +214,7 @@ class Problem:
     revolutions: int = 5
     kept_revolutions: int = 1
     initial_state: "State | None" = None
+    final_nu: float | None = None
     wheels: tuple[Wheel, Wheel] | None = None
     terms: GeneralTerms = GeneralTerms()
 
@@ -232,6 +237,13 @@ class Problem:
     def period(self) -> float:
         """Mesh period T in tau_s."""
         return 2.0 * math.pi / self.nu
+
+    @property
+    def acceleration(self) -> float:
+        """Rate of change of the mesh frequency, d nu / d tau_s."""
+        if self.final_nu is None:
+            return 0.0
+        return (self.final_nu**2 - self.nu**2) / (4.0 * math.pi * self.periods)
 
     @property
     def rotation_speeds(self) -> tuple[float, float]:

@@ -21,7 +21,7 @@ from gearmesh.data import casefile, manifest, paths, provenance
 from gearmesh.data.paths import Places
 from gearmesh.errors import InputError
 from gearmesh.identification import layout
-from gearmesh.identification.design import left_alone, stated
+from gearmesh.identification.sampling.design import left_alone, stated
 from gearmesh.identification.settings import Settings, load_settings
 from gearmesh.pipeline import locks
 from gearmesh.pipeline.inputs import RULES, inputs
@@ -30,6 +30,7 @@ from gearmesh.pipeline.stages import STAGES, job_name
 from gearmesh.reproduction.claims import Claim, load_ledger
 from gearmesh.study.cases import Case, Mechanisms, Study
 from gearmesh.study.loading import load_study
+from gearmesh.study.speeds import check_constant_speed
 
 _TEMPLATES = provenance.PACKAGE / "report" / "templates"
 _SCRIPTS = provenance.PACKAGE / "report" / "explorer" / "scripts"
@@ -345,7 +346,9 @@ def load(
             "run 'make reproduce', which sets up an environment here"
         )
     _name_the_user()
-    plan = Plan(load_study(str(path)))
+    study = load_study(str(path))
+    check_constant_speed(study.pair, f"{path}: each case of a study")
+    plan = Plan(study)
     _ = plan.designs, plan.ledger  # a mistake in them is reported before all jobs
     if main:
         plan.holding = plan.check()

@@ -4,8 +4,8 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from gearmesh.identification.design import Sample, stated
 from gearmesh.identification.factors import FACTORS
+from gearmesh.identification.sampling.design import Sample, stated
 from gearmesh.identification.settings import Range, Settings
 from gearmesh.report.presentation import environment, number
 from gearmesh.reproduction.claims import REPRODUCED, Claim

@@ -13,6 +13,7 @@ from gearmesh.data import classic
 from gearmesh.data.writing import replacing
 from gearmesh.errors import InputError
 from gearmesh.interface.spectra import spectrum
+from gearmesh.report.ramp_figures import draw_ramps, is_ramp
 from gearmesh.reproduction.figures import palette
 from gearmesh.reproduction.figures.canvas import STYLE, WIDTH, V, shade_regions, styled
 from gearmesh.reproduction.figures.orbit import last_periods, scale, switches
@@ -38,8 +39,10 @@ def draw(runs: Sequence[xr.Dataset]) -> Figure:
     Figure
         Left: the phase plane of the kept revolution with its stroboscopic points. Right: y and
         C(t) over the last mesh periods. Below, if all runs hold the tooth force: its spectrum, and
-        its time course.
+        its time course. Speed ramps are drawn over the speed (`gearmesh.report.ramp_figures`).
     """
+    if all(is_ramp(run) for run in runs):
+        return draw_ramps(runs)
     loaded = all("force_normal" in run for run in runs)
     figure = Figure(figsize=(WIDTH, 6.4 if loaded else 3.6), layout="constrained")
     axes = figure.subplots(2 if loaded else 1, 2, width_ratios=(1.0, 1.4), squeeze=False)

@@ -3,6 +3,7 @@
 import math
 
 from gearmesh.model.problem import Problem
+from gearmesh.model.stiffness import TURN
 
 FARTHEST = 1e6
 """Beyond this distance from the backlash, in y_st, a run has diverged."""
@@ -63,14 +64,16 @@ def farthest(problem: Problem) -> float:
 
 def most_steps(problem: Problem) -> float:
     """Return the greatest number of steps of a run; 0 if the run cannot be integrated at all."""
-    required = problem.period / longest_step(problem)
+    slowest, fastest = sorted((problem.nu, problem.final_nu or problem.nu))
+    period = TURN / slowest
+    required = period / longest_step(problem)
     if required > _MOST_PER_PERIOD:
         return 0.0
-    ordinary = _STEPS_PER_PERIOD + _STEPS_PER_UNIT * problem.period * _fastest_rate(problem)
+    ordinary = _STEPS_PER_PERIOD + _STEPS_PER_UNIT * period * _fastest_rate(problem, fastest)
     return min(ordinary, 2.0 * _MOST_PER_PERIOD) * problem.periods
 
 
-def _fastest_rate(problem: Problem) -> float:
+def _fastest_rate(problem: Problem, nu: float) -> float:
     """Return the sum of the fastest rates of the problem: oscillation, decay and excitation."""
     slopes = (k1 + 2.0 * k2 + 3.0 * k3 for k1, k2, k3 in (problem.material, problem.lubricant))
     decay = max(slopes) * _mobility(problem)
@@ -86,4 +89,4 @@ def _fastest_rate(problem: Problem) -> float:
         terms.backlash_harmonics,
     ):
         orders += [harmonic.order for harmonic in harmonics]
-    return highest_frequency(problem) + decay + max(orders) * problem.nu
+    return highest_frequency(problem) + decay + max(orders) * nu

@@ -13,6 +13,7 @@ import numpy as np
 
 from gearmesh.model.contact import CONTACT_LOSS
 from gearmesh.model.problem import Problem, State
+from gearmesh.model.speeds import kept_time, mean_period
 
 OK, STEP_LIMIT, DIVERGED, FRICTION_UNDEFINED = range(4)
 """Outcome of a run, as the compiled solvers return it."""
@@ -103,9 +104,9 @@ class Response:
     status : str
         One of `STATUSES`.
     period : float
-        Mesh period T in tau_s.
+        Mesh period T in tau_s; the mean of the kept ones if the speed changes.
     nu : float
-        Mesh frequency nu_s.
+        Mesh frequency nu_s, at the start if the speed changes.
     steps : int
         Steps that the integration took.
     extremum_time, extremum_y, extremum_kind : ndarray, shape (n_extrema,)
@@ -216,7 +217,7 @@ def assemble(
         In F_st; not a number if the solver does not locate it.
     """
     response = Response(
-        STATUSES[summary["status"]], problem.period, problem.nu, int(summary["steps"])
+        STATUSES[summary["status"]], mean_period(problem), problem.nu, int(summary["steps"])
     )
     if summary["status"] != OK:
         return response
@@ -240,7 +241,7 @@ def _measure(
     samples: Any,
 ) -> None:
     """Write the quantities that are measured on the kept revolutions."""
-    duration = problem.kept_periods * problem.period
+    duration = kept_time(problem)
     response.extremum_time = extrema["time"].copy()
     response.extremum_y = extrema["y"].copy()
     response.extremum_kind = extrema["kind"].copy()

@@ -1,4 +1,4 @@
-"""What engineers state in place of a stored parameter: torque, inertias, damping ratio.
+"""What engineers state in place of a stored parameter: torque, inertias, damping ratio, speed.
 
 A pair stores one parameter of each two, and the other follows from it (`gearmesh.study.pair`).
 """
@@ -8,6 +8,7 @@ from collections.abc import Callable, Mapping
 from functools import partial
 from typing import Any, NamedTuple
 
+from gearmesh.study.frequencies import read_nu
 from gearmesh.study.parameters import Parameters
 from gearmesh.study.relative import MM_PER_M, read_parameter, stated_mean_stiffness
 from gearmesh.study.schema import Section, of_wheels, quantity
@@ -27,6 +28,9 @@ class Alternatives(Section):
     )
     damping_ratio: float = quantity(
         "1", "D", "damping ratio k/(2 √(C_s m_red)) of every term that acts", 0.0, 10.0
+    )
+    final_speed: float = quantity(
+        "rpm", "n_e", "speed of wheel 3 at the end of a speed ramp, linear in time", 1e-6, 1e6
     )
 
 
@@ -49,6 +53,7 @@ ALTERNATIVES = {
     "torque": Alternative(("static_deflection",), "M_3/(R_b3 C_s)"),
     "inertia": Alternative(("reduced_mass", "mass_ratio"), "1/(R_b3²/J_3 + R_b2²/J_2)"),
     "damping_ratio": Alternative(("damping",), "2 D √(C_s m_red)"),
+    "final_speed": Alternative(("final_nu",), "2π n_e Z_3/(60 Ω_s)"),
 }
 
 NAMES = (*Parameters.model_fields, *ALTERNATIVES)
@@ -118,10 +123,21 @@ def _damping(read: Read) -> dict[str, str]:
     return {"damping": f"{read('damping_ratio') * critical!r} N*s/mm"}
 
 
+def _final_nu(read: Read) -> dict[str, float]:
+    mass = read("reduced_mass") / KG_PER_N_S2_MM
+    rate = 2.0 * math.pi / 60.0 * read("final_speed") * of_wheels(read("teeth"))[0]
+    nu = rate * math.sqrt(mass / stated_mean_stiffness(read))
+    try:
+        return {"final_nu": read_nu(nu)}
+    except ValueError as error:
+        raise ValueError(f"final_speed: ν_s = {nu:.6g} is {error}") from None
+
+
 _STORED: dict[str, Callable[[Read], dict[str, Any]]] = {
     "torque": _static_deflection,
     "inertia": _reduced_mass,
     "damping_ratio": _damping,
+    "final_speed": _final_nu,
 }
 
 

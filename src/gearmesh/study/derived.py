@@ -28,6 +28,8 @@ FOLLOWING = (
     Quantity("damping", "k", "N*s/mm", "2 D √(C_s m_red)"),
     Quantity("damping_ratio", "D", "1", "k/(2 √(C_s m_red))"),
     Quantity("resonance_speed", "n_1", "rpm", "speed of wheel 3 at ν_s = 1, 60 Ω_s/(2π Z_3)"),
+    Quantity("final_nu", "ν_e", "1", "2π n_e Z_3/(60 Ω_s)"),
+    Quantity("final_speed", "n_e", "rpm", "60 ν_e Ω_s/(2π Z_3)"),
     Quantity("nu_min_ratio", "ν_min/ν_s", "1", "√(C_s/C_min)"),
     Quantity("nu_max_ratio", "ν_max/ν_s", "1", "√(C_s/C_max)"),
     Quantity("static_deflection", "y_st", "mm", "M_3/(R_b3 C_s)"),
@@ -44,4 +46,6 @@ FOLLOWING = (
 def derived(pair: Pair) -> list[Quantity]:
     """Return what follows from the parameters that a pair states."""
     stated = {parameter.name for parameter in pair.parameters}
+    if pair.final_nu is None:
+        stated |= {"final_nu", "final_speed"}
     return [quantity for quantity in FOLLOWING if quantity.name not in stated]

@@ -195,6 +195,13 @@ class Pair(Parameters):
         return 60.0 * self.natural_frequency / (2.0 * math.pi * self.teeth_3)
 
     @property
+    def final_speed(self) -> float | None:
+        """Speed of wheel 3 in rpm at the end of a run whose speed changes; None if it does not."""
+        if self.final_nu is None:
+            return None
+        return self._as_stated("final_speed", self.final_nu * self.resonance_speed)
+
+    @property
     def damping_ratio(self) -> float:
         """D = k/(2 √(C_s m_red)), the paper's proportional damping."""
         return self._as_stated("damping_ratio", self.damping_ratio_of(self.damping))

@@ -6,12 +6,13 @@ from typing import Literal, Self
 from pydantic import model_validator
 
 from gearmesh.study.flanks import check_flanks
+from gearmesh.study.frequencies import NU_MAX, NU_MIN
 from gearmesh.study.harmonics import BacklashHarmonic, ToothStiffness, TorqueHarmonic
 from gearmesh.study.schema import Section, quantity
 
 SETTINGS = frozenset(
     {"initial_phase", "initial_displacement", "initial_velocity"}
-    | {"initial_coordinates", "initial_rates"}
+    | {"initial_coordinates", "initial_rates", "final_nu"}
     | {"revolutions", "kept_revolutions", "samples_per_period", "tolerance"}
 )
 """Parameters of a run. They state nothing about the gear."""
@@ -217,6 +218,11 @@ class Parameters(Section):
     initial_rates: tuple[float, ...] = quantity(
         *("mm", "q'_0", "initial dq/dτ_s of these six, τ_s = Ω_s t; by default 0", -1e3, 1e3),
         default=(),
+    )
+    final_nu: float | None = quantity(
+        *("1", "ν_e", "ν_s at the end of a speed ramp, linear in time; constant speed if open"),
+        *(NU_MIN, NU_MAX),
+        default=None,
     )
     revolutions: int = quantity("1", "n_r", "revolutions that are run", 1, 10_000, default=5)
     kept_revolutions: int = quantity(

@@ -19,7 +19,8 @@ if TYPE_CHECKING:
 
 def problem_of(pair: "Pair", variant: Variant, nu: float) -> Problem:
     """State one run in static deflections, 1/Ω_s and static forces (`Pair.problem`)."""
-    problem = replace(_at_resonance(pair, variant), nu=nu)
+    final_nu = None if pair.final_nu == nu else pair.final_nu
+    problem = replace(_at_resonance(pair, variant), nu=nu, final_nu=final_nu)
     y_st = pair.static_deflection
     if pair.initial_coordinates or pair.initial_rates:
         q, v = static_equilibrium(problem)

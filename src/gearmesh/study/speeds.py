@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping
 
+from gearmesh.errors import InputError
 from gearmesh.study import units
 from gearmesh.study.frequencies import read_nu
 from gearmesh.study.pair import Pair
@@ -33,6 +34,14 @@ def as_nu(value: object, pair: Pair) -> object:
         return units.parse(value, "rpm") / pair.resonance_speed
     except ValueError:
         return value
+
+
+def check_constant_speed(pair: Pair, wanted: str) -> None:
+    """Raise InputError if the speed of a pair changes, where `wanted` has one speed."""
+    if pair.final_nu is not None:
+        raise InputError(
+            f"final_nu: found {pair.final_nu:g}; {wanted} has a constant speed, so it must be open"
+        )
 
 
 def read_nu_or_speed(value: object, pair: Pair) -> float:

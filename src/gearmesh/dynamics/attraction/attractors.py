@@ -7,11 +7,9 @@ from functools import cached_property
 
 import numpy as np
 
-from gearmesh.dynamics.orbits import Orbit, correct
+from gearmesh.dynamics.attraction.maps import PoincareMap
+from gearmesh.dynamics.shots import Shot
 from gearmesh.errors import NoOrbit
-from gearmesh.model.problem import Problem
-from gearmesh.solvers.reduced.ensembles import advance, laws_of
-from gearmesh.solvers.reduced.period_map import passage
 
 PERIODIC, NEUTRAL, QUASI_PERIODIC, CHAOTIC, MOVING, LOST = (
     "periodic",
@@ -24,13 +22,11 @@ PERIODIC, NEUTRAL, QUASI_PERIODIC, CHAOTIC, MOVING, LOST = (
 """Kinds of attractors: an orbit; motion on which no damping acts any more; motion that fills a
 closed curve; chaos; a motion that still changes after the transient; a run that failed."""
 
-WEIGHTS = np.array([1.0, 1.0, 0.01, 0.01])
-"""Weights of y, y', b, b' in distances: the bodies hardly act on the mesh."""
-
 SAME = 1e-6
 """Distance, in y_st, of two numbers that are the same."""
 
-_MOST_PERIODS = 12
+_MOST_PERIODS = 12  # of an orbit that is searched for,
+_MOST_STEPS = 4  # or so many steps of the map if each takes several mesh periods
 _NEAR = 0.1  # distance after n periods, in y_st, of a state that may be close to an orbit
 _AS_CLOSE = 2.0
 
@@ -44,7 +40,7 @@ class Attractor:
     kind : str
         ``"periodic"``, ``"neutral"``, ``"quasi-periodic"``, ``"chaotic"``, ``"moving"`` or
         ``"lost"``.
-    orbit : Orbit, optional
+    orbit : Shot, optional
         The orbit of a periodic attractor.
     exponent : float
         Largest Lyapunov exponent, in Omega_s.
@@ -55,14 +51,14 @@ class Attractor:
     """
 
     kind: str
-    orbit: Orbit | None = None
+    orbit: Shot | None = None
     exponent: float = math.nan
     time_constant: float = math.nan
 
     @classmethod
-    def of(cls, orbit: Orbit) -> "Attractor":
+    def of(cls, orbit: Shot) -> "Attractor":
         """Return the attractor that a stable orbit is."""
-        growth = math.log(abs(orbit.multipliers[0])) / orbit.periods
+        growth = orbit.growth
         return cls(PERIODIC, orbit, growth / orbit.problem.period, -1.0 / growth)
 
     @property
@@ -79,12 +75,8 @@ class Attractor:
     @cached_property
     def _strobe(self) -> np.ndarray:
         if self.orbit is None:
-            return np.full(4, math.nan)
-        moved = self.orbit.at_phase(0.0)
-        points = [moved.state]
-        for _ in range(moved.periods - 1):
-            points.append(passage(moved.problem, points[-1]).end)
-        return max(points, key=lambda point: float(point[0]))
+            return np.full(2, math.nan)
+        return max(self.orbit.at_phase(0.0).strobes, key=lambda point: float(point[0]))
 
     @property
     def strobe_y(self) -> float:
@@ -121,30 +113,30 @@ class Attractor:
         return False, self.orbit.periods, self.y_max, self.kind
 
 
-def stable_orbits_near(problem: Problem, states: np.ndarray, most: int) -> Iterator[Orbit]:
+def stable_orbits_near(moved: PoincareMap, states: np.ndarray, most: int) -> Iterator[Shot]:
     """Yield stable orbits close to states after a transient.
 
     Parameters
     ----------
-    problem : Problem
-    states : ndarray, shape (n, 4)
-        y, y', b, b' at `Problem.initial_phase`.
+    moved : PoincareMap
+    states : ndarray, shape (n, k)
     most : int
         Number of states from which orbits are searched for: those that return closest to
-        themselves within 12 mesh periods.
+        themselves within 12 mesh periods, or 4 steps of the map.
     """
-    laws, moved = laws_of([problem]), [states]
-    for _ in range(_MOST_PERIODS):
-        moved.append(advance(laws, moved[-1], 1))
-    away = np.abs((np.array(moved[1:]) - states) * WEIGHTS).max(axis=2)
+    path = [states]
+    for _ in range(max(_MOST_STEPS, _MOST_PERIODS // moved.block)):
+        path.append(moved.advance(path[-1], 1))
+    places = np.array([moved.coordinates(one) for one in path])
+    away = np.abs((places[1:] - places[0]) * moved.weights).max(axis=2)
     closest = away.min(axis=0)
     for i in np.argsort(closest)[:most]:
         if not closest[i] < _NEAR:
             break
         # The least period of those that return about as close.
-        periods = int(np.argmax(away[:, i] < _AS_CLOSE * closest[i] + SAME)) + 1
+        steps = int(np.argmax(away[:, i] < _AS_CLOSE * closest[i] + SAME)) + 1
         try:
-            orbit = correct(problem, states[i], periods)
+            orbit = moved.orbit(states[i], steps)
         except NoOrbit:
             continue
         if orbit.stable:

@@ -8,20 +8,19 @@ most attractors, and how shallow contact losses have to be to vanish in the end.
 
 import math
 from collections.abc import Sequence
-from itertools import product
 from typing import NamedTuple
 
 import numpy as np
 
 from gearmesh.dynamics.attraction.attractors import Attractor
+from gearmesh.dynamics.attraction.maps import map_of
 from gearmesh.dynamics.attraction.search import Search
 from gearmesh.model.problem import Problem
-from gearmesh.solvers.reduced.ensembles import advance, advance_to_phase
 
 TRANSIENT = 60
 """Revolutions after which a motion that has not settled is classified as it is."""
 
-_BLOCK = 20  # mesh periods from one look at the runs to the next
+_BLOCK = 20  # least mesh periods from one look at the runs to the next
 _FIRST = 2  # blocks before the first search for orbits
 _EVERY = 3  # blocks from one search to the next
 _PILOTS = 256
@@ -51,13 +50,14 @@ def reached(problem: Problem, states: np.ndarray, transient: int = TRANSIENT) ->
     ----------
     problem : Problem
         Its initial state does not matter.
-    states : ndarray, shape (n, 4)
-        y, y', b, b' of each run at `Problem.initial_phase`.
+    states : ndarray, shape (n, k)
+        State of each run as the Poincaré map takes it: y, y', b, b' in the reduced system.
     transient : int
         Revolutions after which a motion that has not settled is classified as it is.
     """
-    search = Search(problem)
-    blocks = math.ceil(transient * problem.teeth / _BLOCK)
+    search = Search(map_of(problem))
+    block = search.moved.block * _steps(search)
+    blocks = math.ceil(transient * problem.teeth / block)
     order = np.random.default_rng(0).permutation(len(states))
     pilots, others = order[:_PILOTS], order[_PILOTS:]
     labels = np.empty(len(states), int)
@@ -68,6 +68,11 @@ def reached(problem: Problem, states: np.ndarray, transient: int = TRANSIENT) ->
     ranks = [one.rank for one in search.attractors]
     ordered = sorted(range(len(ranks)), key=ranks.__getitem__)
     return Reached([search.attractors[i] for i in ordered], np.argsort(ordered)[labels])
+
+
+def _steps(search: Search) -> int:
+    """Return the steps of the Poincaré map from one look at the runs to the next."""
+    return math.ceil(_BLOCK / search.moved.block)
 
 
 def _follow(search: Search, states: np.ndarray, blocks: int) -> tuple[np.ndarray, np.ndarray]:
@@ -90,22 +95,17 @@ def _follow(search: Search, states: np.ndarray, blocks: int) -> tuple[np.ndarray
             highest[runs] = np.maximum(highest[runs], margins)
             if block == blocks // 2:
                 middle[runs] = margins
-        states[runs] = advance(search.laws, states[runs], _BLOCK)
+        states[runs] = search.moved.advance(states[runs], _steps(search))
     if runs.size:
         labels[runs] = search.classified(states[runs], middle[runs])
     return labels, highest
 
 
 def grid(problem: Problem) -> np.ndarray:
-    """Return initial conditions that reach through the backlash, shape (36, 4)."""
+    """Return states that reach through the backlash, shape (36, k)."""
     heights = (-problem.backlash - 1.0, -0.5 * problem.backlash, *_HEIGHTS)
-    return initial_states(problem, np.array(heights), np.array(_RATES))
-
-
-def initial_states(problem: Problem, y: np.ndarray, v: np.ndarray) -> np.ndarray:
-    """Return the states of a grid of y and y' with the bodies in equilibrium under F_st."""
-    rest = -2.0 / problem.bearing_stiffness
-    return np.array([(height, rate, rest, 0.0) for height, rate in product(y, v)])
+    phases = [problem.initial_phase]
+    return map_of(problem).starts(np.array(heights), np.array(_RATES), phases)
 
 
 class Basins(NamedTuple):
@@ -146,8 +146,7 @@ def basins(
         Revolutions before the motion is classified.
     """
     phases = [problem.initial_phase] if phases is None else list(phases)
-    starts = np.tile(initial_states(problem, y, v), (len(phases), 1))
-    states = advance_to_phase(problem, np.repeat(phases, len(y) * len(v)), starts)
+    states = map_of(problem).starts(np.asarray(y), np.asarray(v), phases)
     found = reached(problem, np.concatenate([grid(problem), states]), transient)
     labels = found.labels[-len(states) :]
     counts = np.bincount(labels, minlength=len(found.attractors))

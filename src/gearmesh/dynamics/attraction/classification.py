@@ -12,17 +12,16 @@ from gearmesh.dynamics.attraction.attractors import (
     MOVING,
     NEUTRAL,
     SAME,
-    WEIGHTS,
     Attractor,
 )
 from gearmesh.dynamics.attraction.envelopes import RISE, Envelope, envelope_of
 from gearmesh.dynamics.attraction.irregular import irregular_kinds
+from gearmesh.dynamics.attraction.maps import WEIGHTS, ReducedMap
 from gearmesh.dynamics.orbits import Orbit, correct
 from gearmesh.dynamics.starts import initial_coordinates
 from gearmesh.errors import NoOrbit
 from gearmesh.model.problem import Problem
 from gearmesh.solvers.reduced.ensembles import advance, laws_of, trace
-from gearmesh.solvers.reduced.period_map import passage
 
 CHECKED_AFTER = (105, 210, 420, 840, 1260)
 """Mesh periods after which motions are compared with orbits."""
@@ -113,7 +112,7 @@ def _classify(problems: Sequence[Problem]) -> list[LongRun]:
         if not open_:
             break
     if open_:
-        kinds, rates = irregular_kinds([problems[i] for i in open_], laws[open_], states[open_])
+        kinds, rates = irregular_kinds(ReducedMap([problems[i] for i in open_]), states[open_])
         for i, kind, rate in zip(open_, kinds, rates.tolist(), strict=True):
             found[i] = LongRun(Attractor(kind, exponent=rate), 0 if kind == NEUTRAL else None)
     return [found[i] for i in range(len(runs))]
@@ -134,7 +133,7 @@ def _ending(run: _Run, end: np.ndarray, last: bool) -> LongRun | None:
             return LongRun(Attractor(MOVING, exponent=rate, time_constant=constant), None)
     strobes = np.concatenate(run.strobes)
     for orbit in _candidates(run, strobes, end):
-        points = _points(orbit)
+        points = orbit.points
         away = np.abs((points - end) * WEIGHTS).max(axis=1)
         if away.min() < SETTLED:
             attractor = Attractor.of(orbit)
@@ -161,14 +160,6 @@ def _candidates(run: _Run, strobes: np.ndarray, end: np.ndarray) -> Iterator[Orb
     if orbit.stable:
         run.orbit = orbit
         yield orbit
-
-
-def _points(orbit: Orbit) -> np.ndarray:
-    """Return the states of an orbit in its mesh periods, shape (n, 4)."""
-    points = [orbit.state]
-    for _ in range(orbit.periods - 1):
-        points.append(passage(orbit.problem, points[-1]).end)
-    return np.array(points)
 
 
 def _settled(strobes: np.ndarray, points: np.ndarray, at_end: int) -> int:

@@ -1,13 +1,13 @@
 """Lyapunov exponents of a motion, from the exact Jacobian of each mesh period."""
 
+import math
 from typing import NamedTuple
 
 import numpy as np
 
-from gearmesh.dynamics.starts import initial_coordinates
+from gearmesh.dynamics.attraction.maps import map_of
 from gearmesh.errors import NoOrbit
 from gearmesh.model.problem import Problem
-from gearmesh.solvers.reduced.period_map import passage
 
 _BLOCKS = 8
 
@@ -17,20 +17,17 @@ class LyapunovSpectrum(NamedTuple):
 
     Attributes
     ----------
-    exponents : ndarray, shape (4,)
+    exponents : ndarray, shape (m,)
         Mean rates of growth in Omega_s, the largest first.
-    errors : ndarray, shape (4,)
+    errors : ndarray, shape (m,)
         Their standard errors, from the scatter of the rates in equal parts of the time.
-    end : ndarray, shape (4,)
-        y, y', b, b' at the end.
-    damping : float
-        Integral of the slope of the damping law of the mesh; 0 if no damping acts.
+    end : ndarray, shape (k,)
+        The state at the end.
     """
 
     exponents: np.ndarray
     errors: np.ndarray
     end: np.ndarray
-    damping: float
 
 
 def lyapunov_spectrum(
@@ -41,40 +38,41 @@ def lyapunov_spectrum(
     Parameters
     ----------
     problem : Problem
-        Without run-out, profile deviation and Fourier stiffness.
-    state : array_like, shape (4,)
-        y, y', b, b' at `Problem.initial_phase`.
+    state : array_like, shape (k,)
+        As the Poincaré map takes it: y, y', b, b' at `Problem.initial_phase` in the reduced system.
     periods : int
         Mesh periods over which growth is measured, at least 8.
     transient : int
-        Mesh periods before the measurement, in which the directions of growth align.
+        Mesh periods before the measurement, in which the directions of growth align. Both numbers
+        are rounded up to whole steps of the Poincaré map.
 
     Raises
     ------
     NoOrbit
-        If the motion runs away.
+        If the motion runs away, or if the excitation does not repeat.
     """
-    frame, growth, damping = np.eye(4), np.zeros((periods, 4)), 0.0
-    for n in range(-transient, periods):
-        moved = passage(problem, state)
-        if moved.status != "complete":
-            raise NoOrbit(f"the motion ends with {moved.status}")
-        state = moved.end
-        frame, stretch = np.linalg.qr(moved.jacobian @ frame)
-        if n >= 0:
-            growth[n] = np.log(np.abs(np.diag(stretch))) / problem.period
-            damping += moved.damping
-    parts = np.array([part.mean(axis=0) for part in np.array_split(growth, _BLOCKS)])
-    exponents = growth.mean(axis=0)
+    moved = map_of(problem)
+    frame, growth = np.eye(len(moved.weights)), []
+    before, measured = (math.ceil(count / moved.block) for count in (transient, periods))
+    for n in range(-before, measured):
+        state, factors = moved.step(state)
+        for factor in factors:
+            frame, stretch = np.linalg.qr(factor @ frame)
+            if n >= 0:
+                growth.append(np.log(np.abs(np.diag(stretch))) / problem.period)
+    parts = np.array([part.mean(axis=0) for part in np.array_split(np.array(growth), _BLOCKS)])
+    exponents = np.mean(growth, axis=0)
     errors = parts.std(axis=0, ddof=1) / np.sqrt(_BLOCKS)
     order = np.argsort(-exponents)
-    return LyapunovSpectrum(exponents[order], errors[order], state, damping)
+    return LyapunovSpectrum(exponents[order], errors[order], state)
 
 
 def spectrum_of(problem: Problem, periods: int, transient: int) -> LyapunovSpectrum:
     """Return the Lyapunov exponents of a run; not-a-number if it runs away."""
+    moved = map_of(problem)
+    state = moved.start(problem)
     try:
-        return lyapunov_spectrum(problem, initial_coordinates(problem), periods, transient)
+        return lyapunov_spectrum(problem, state, periods, transient)
     except NoOrbit:
-        nothing = np.full(4, np.nan)
-        return LyapunovSpectrum(nothing, nothing, nothing, np.nan)
+        nothing = np.full(len(moved.weights), np.nan)
+        return LyapunovSpectrum(nothing, nothing, np.full_like(state, np.nan))

@@ -14,17 +14,17 @@ from dataclasses import dataclass, replace
 import numpy as np
 from scipy.linalg import solve_discrete_lyapunov
 
-from gearmesh.dynamics.attraction.attractors import WEIGHTS
-from gearmesh.dynamics.orbits import Orbit
-from gearmesh.solvers.reduced.ensembles import advance, laws_of
-from gearmesh.solvers.reduced.period_map import passage
+from gearmesh.dynamics.attraction.maps import PoincareMap
+from gearmesh.dynamics.shots import Shot
 
 _SIZES = (1e-5, 1e-4, 1e-3, 0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1.0)
 """Sizes that are tried, in y_st."""
 
-_DIRECTIONS = 64  # motions that try a size, from each point of the orbit
+_DIRECTIONS = 64  # motions that try a size, from each point of the orbit,
+_FEWEST = 16  # or fewer where a step of the map takes several mesh periods
 _FALL = 0.7  # of the size, in the time over which it is tried
 _MOST_PERIODS = 2000
+_LEAST_RHO = 0.1
 
 
 @dataclass(frozen=True)
@@ -33,9 +33,9 @@ class Region:
 
     Attributes
     ----------
-    points : ndarray, shape (n, 4)
-        States of the orbit at its phase in each of its mesh periods.
-    forms : ndarray, shape (n, 4, 4)
+    points : ndarray, shape (n, m)
+        Coordinates of the orbit after each of its steps of the Poincaré map.
+    forms : ndarray, shape (n, m, m)
         Square roots of the quadratic forms: V = |form d|^2.
     size : float
         Root of V on the surface of the region.
@@ -45,54 +45,61 @@ class Region:
     forms: np.ndarray
     size: float = 0.0
 
-    def distances(self, states: np.ndarray) -> np.ndarray:
-        """Return the least root of V of states of shape (m, 4), shape (m,)."""
+    def distances(self, places: np.ndarray) -> np.ndarray:
+        """Return the least root of V of places of shape (r, m), shape (r,)."""
         away = [
-            np.linalg.norm((states - point) @ form.T, axis=1)
+            np.linalg.norm((places - point) @ form.T, axis=1)
             for point, form in zip(self.points, self.forms, strict=True)
         ]
         return np.asarray(np.min(away, axis=0))
 
-    def holds(self, states: np.ndarray) -> np.ndarray:
-        """Return which states of shape (m, 4) are in the region, shape (m,)."""
-        return self.distances(states) < self.size
+    def holds(self, places: np.ndarray) -> np.ndarray:
+        """Return which places of shape (r, m) are in the region, shape (r,)."""
+        return self.distances(places) < self.size
 
 
-def region_of(orbit: Orbit, phase: float) -> Region:
-    """Return the trapping region of a stable orbit at a mesh phase.
+def region_of(moved: PoincareMap, orbit: Shot) -> Region:
+    """Return the trapping region of a stable orbit.
 
     Its size is 0 if the orbit attracts too slowly to be tried.
     """
-    orbit = orbit.at_phase(phase)
-    rho = math.sqrt(abs(orbit.multipliers[0]))
-    points, jacobians = [orbit.state], []
-    for _ in range(orbit.periods):
-        moved = passage(orbit.problem, points[-1])
-        points.append(moved.end)
-        jacobians.append(moved.jacobian)
-    weights = np.diag(WEIGHTS**2)
-    forms = []
-    for i in range(orbit.periods):
-        whole = np.eye(4)
+    states, jacobians = [moved.state_of(orbit)], []
+    for _ in range(max(1, orbit.periods // moved.block)):
+        end, factors = moved.step(states[-1])
+        states.append(end)
+        whole = factors[0]
+        for factor in factors[1:]:
+            whole = factor @ whole
+        jacobians.append(whole)
+    weights = np.diag(moved.weights**2)
+    forms, rho = [], 0.0
+    for i in range(len(jacobians)):
+        whole = np.eye(len(weights))
         for jacobian in jacobians[i:] + jacobians[:i]:
             whole = jacobian @ whole
+        rho = rho or max(_LEAST_RHO, math.sqrt(np.abs(np.linalg.eigvals(whole)).max()))
         form = solve_discrete_lyapunov(whole.T / rho, weights)
         forms.append(np.linalg.cholesky(0.5 * (form + form.T)).T)
-    region = Region(np.array(points[:-1]), np.array(forms))
-    return replace(region, size=_size(orbit, region, rho))
+    visited = np.array(states[:-1])
+    region = Region(moved.coordinates(visited), np.array(forms))
+    return replace(region, size=_size(moved, visited, region, rho))
 
 
-def _size(orbit: Orbit, region: Region, rho: float) -> float:
+def _size(moved: PoincareMap, visited: np.ndarray, region: Region, rho: float) -> float:
     """Return the largest size up to which motions come closer as the linear map says."""
     repeats = math.ceil(math.log(_FALL) / math.log(rho))
-    if repeats * orbit.periods > _MOST_PERIODS:
+    steps = repeats * len(visited)
+    if steps * moved.block > max(_MOST_PERIODS, moved.block):
         return 0.0
-    directions = np.random.default_rng(0).standard_normal((_DIRECTIONS, 4))
+    count = max(_FEWEST, _DIRECTIONS // moved.block)
+    directions = np.random.default_rng(0).standard_normal((count, len(moved.weights)))
     directions /= np.linalg.norm(directions, axis=1, keepdims=True)
     unit = np.concatenate([np.linalg.solve(form, directions.T).T for form in region.forms])
-    centres = np.repeat(region.points, _DIRECTIONS, axis=0)
-    starts = np.concatenate([centres + size * unit for size in _SIZES])
-    ends = advance(laws_of([orbit.problem]), starts, repeats * orbit.periods)
-    farthest = region.distances(ends).reshape(len(_SIZES), -1).max(axis=1)
-    fits = farthest <= np.array(_SIZES) * rho**repeats
-    return (0.0, *_SIZES)[int(np.logical_and.accumulate(fits).sum())]
+    centres = np.repeat(visited, count, axis=0)
+    fits = 0.0
+    for size in _SIZES:
+        ends = moved.coordinates(moved.advance(moved.displaced(centres, size * unit), steps))
+        if not region.distances(ends).max() <= size * rho**repeats:
+            break
+        fits = size
+    return fits

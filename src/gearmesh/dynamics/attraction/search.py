@@ -7,15 +7,16 @@ import numpy as np
 from gearmesh.dynamics.attraction.attractors import (
     LOST,
     NEUTRAL,
+    PERIODIC,
     Attractor,
     stable_orbits_near,
 )
 from gearmesh.dynamics.attraction.envelopes import RISE, envelope_of
 from gearmesh.dynamics.attraction.irregular import irregular_kinds
+from gearmesh.dynamics.attraction.maps import PoincareMap
 from gearmesh.dynamics.attraction.regions import Region, region_of
-from gearmesh.dynamics.orbits import Orbit
-from gearmesh.model.problem import Problem
-from gearmesh.solvers.reduced.ensembles import laws_of
+from gearmesh.dynamics.shots import Shot
+from gearmesh.solvers.reduced.runs import is_reducible
 
 _TRIED = 64  # states near which orbits are searched for
 _LOOKS = 2  # searches among them
@@ -27,18 +28,18 @@ class Search:
 
     Attributes
     ----------
+    moved : PoincareMap
     problem : Problem
         All states are taken at its initial phase.
-    laws : ndarray, shape (1,)
-        See `gearmesh.solvers.reduced.ensembles`.
     envelope : Envelope or None
+        None if only the general solver serves the gear pair.
     attractors : list of Attractor
     """
 
-    def __init__(self, problem: Problem) -> None:
-        self.problem = problem
-        self.laws = laws_of([problem])
-        self.envelope = envelope_of(problem)
+    def __init__(self, moved: PoincareMap) -> None:
+        self.moved = moved
+        self.problem = moved.problem
+        self.envelope = envelope_of(self.problem) if is_reducible(self.problem) else None
         self.attractors: list[Attractor] = []
         self._regions: list[tuple[int, Region]] = []
         self._shallow = 0.0
@@ -63,9 +64,10 @@ class Search:
         failed = np.isnan(states[:, 0])
         if failed.any():
             labels[failed] = self.label(Attractor(LOST))
+        places = self.moved.coordinates(states)
         for i, region in self._regions:
             open_ = np.flatnonzero(labels < 0)
-            labels[open_[region.holds(states[open_])]] = i
+            labels[open_[region.holds(places[open_])]] = i
         if self.envelope:
             open_ = np.flatnonzero(labels < 0)
             inside = open_[self.envelope.is_above(states[open_], -self._shallow)]
@@ -76,15 +78,14 @@ class Search:
     def look(self, states: np.ndarray) -> None:
         """Search for stable orbits near states of runs that are not over."""
         some = states[:: math.ceil(len(states) / _TRIED)]
-        for orbit in stable_orbits_near(self.problem, some, _LOOKS):
+        for orbit in stable_orbits_near(self.moved, some, _LOOKS):
             self._add(orbit)
 
-    def _add(self, orbit: Orbit) -> None:
+    def _add(self, orbit: Shot) -> None:
         """Add a stable orbit to what is known."""
-        known = len(self.attractors)
-        i = self.label(Attractor.of(orbit))
-        if i == known:
-            self._regions.append((i, region_of(orbit, self.problem.initial_phase)))
+        if not any(one.same_as(Attractor(PERIODIC, orbit)) for one in self.attractors):
+            self._regions.append((len(self.attractors), region_of(self.moved, orbit)))
+            self.attractors.append(Attractor.of(orbit))
 
     def learn(self, labels: np.ndarray, margins: np.ndarray) -> None:
         """Learn from finished runs how shallow contact losses are that vanish in the end.
@@ -109,7 +110,7 @@ class Search:
 
         Parameters
         ----------
-        states : ndarray, shape (n, 4)
+        states : ndarray, shape (n, k)
         before : ndarray, shape (n,)
             Margins half a transient earlier.
         """
@@ -120,8 +121,7 @@ class Search:
                 labels[rising] = self.neutral()
         open_ = np.flatnonzero(labels < 0)
         if open_.size:
-            problems = [self.problem] * open_.size
-            kinds, rates = irregular_kinds(problems, self.laws, states[open_])
+            kinds, rates = irregular_kinds(self.moved, states[open_])
             for kind in set(kinds):
                 are = np.array([one == kind for one in kinds])
                 rate = float(np.mean(rates[are]))

@@ -36,8 +36,8 @@ def figure(study: Study, places: Places, name: str) -> list[Path]:
 def identified_figures(study: Study, places: Places) -> list[Path]:
     """Draw the report's figures of the open parameters, as inferred from the claims."""
     from gearmesh.identification import layout, table
-    from gearmesh.identification.design import stated
     from gearmesh.identification.figures import draw_regions, draw_sensitivity
+    from gearmesh.identification.sampling.design import stated
     from gearmesh.identification.settings import load_settings
     from gearmesh.reproduction.figures import canvas
 

@@ -12,10 +12,11 @@ def samples(study: Study, places: Places, design: str, index: str) -> list[Path]
     """Measure the claims on one batch of samples of the open parameters."""
     import warnings
 
-    from gearmesh.identification import boxes, layout, store
-    from gearmesh.identification.design import unit_points
+    from gearmesh.identification import layout
+    from gearmesh.identification.sampling import boxes, store
+    from gearmesh.identification.sampling.design import unit_points
+    from gearmesh.identification.sampling.survey import compute
     from gearmesh.identification.settings import load_settings
-    from gearmesh.identification.survey import compute
 
     # A quantity that exists nowhere has the median not-a-number, as intended.
     warnings.filterwarnings("ignore", category=RuntimeWarning)
@@ -33,9 +34,11 @@ def samples(study: Study, places: Places, design: str, index: str) -> list[Path]
 
 def box(study: Study, places: Places, design: str) -> list[Path]:
     """Find the box that the best samples before a focused design span."""
-    from gearmesh.identification import boxes, focus, layout, store
+    from gearmesh.identification import layout
+    from gearmesh.identification.estimation import focus
+    from gearmesh.identification.sampling import boxes, store
+    from gearmesh.identification.sampling.survey import tested_claims
     from gearmesh.identification.settings import load_settings
-    from gearmesh.identification.survey import tested_claims
     from gearmesh.reproduction.claims import load_ledger
 
     settings = load_settings(layout.SETTINGS)
@@ -50,7 +53,8 @@ def box(study: Study, places: Places, design: str) -> list[Path]:
 
 def all_samples(study: Study, places: Places) -> list[Path]:
     """Put all samples of the open parameters together."""
-    from gearmesh.identification import layout, store
+    from gearmesh.identification import layout
+    from gearmesh.identification.sampling import store
     from gearmesh.identification.settings import load_settings
 
     settings = load_settings(layout.SETTINGS)
@@ -61,11 +65,12 @@ def all_samples(study: Study, places: Places) -> list[Path]:
 
 def identified(study: Study, places: Places) -> list[Path]:
     """Infer the open parameters from all samples, and check the inference on itself."""
-    from gearmesh.identification import boxes, layout, store, table
-    from gearmesh.identification.analysis import Analysis
-    from gearmesh.identification.findings import findings
+    from gearmesh.identification import layout, table
+    from gearmesh.identification.estimation.analysis import Analysis
+    from gearmesh.identification.estimation.findings import findings
+    from gearmesh.identification.sampling import boxes, store
+    from gearmesh.identification.sampling.survey import tested_claims
     from gearmesh.identification.settings import load_settings
-    from gearmesh.identification.survey import tested_claims
     from gearmesh.reproduction.claims import load_ledger
 
     settings = load_settings(layout.SETTINGS)

@@ -43,20 +43,26 @@ class _Order:
         self.builder = builder
         self.series, self.numbers, self.direction = arguments[:3]
         self.k = k
+        self.now = builder.gep(self.series, [k])
+        self._inverses: dict[int, ir.Value] = {}
 
     def _shifted(self, by: int) -> ir.Value:
         return self.builder.add(self.k, ir.Constant(INT64, by))
 
-    def _place(self, row: int, k: ir.Value) -> ir.Value:
-        at = self.builder.add(ir.Constant(INT64, row * WIDTH), k)
-        return self.builder.gep(self.series, [at])
+    def _place(self, column: ir.Value, row: int, by: int) -> ir.Value:
+        # Offsets that are constant become part of the instruction that loads or stores.
+        return self.builder.gep(column, [ir.Constant(INT64, row * WIDTH + by)])
 
-    def _load(self, row: int, k: ir.Value | int) -> ir.Value:
-        k = ir.Constant(INT64, k) if isinstance(k, int) else k
-        return self.builder.load(self._place(row, k))
+    def _load(self, row: int, by: int = 0) -> ir.Value:
+        """Return the coefficient of order k + `by` of the series in `row`."""
+        return self.builder.load(self._place(self.now, row, by))
 
-    def _store(self, row: int, k: ir.Value, value: ir.Value) -> None:
-        self.builder.store(value, self._place(row, k))
+    def _low(self, row: int, order: int = 0) -> ir.Value:
+        """Return the coefficient of order `order` of the series in `row`."""
+        return self.builder.load(self._place(self.series, row, order))
+
+    def _store(self, row: int, value: ir.Value, by: int = 0) -> None:
+        self.builder.store(value, self._place(self.now, row, by))
 
     def _number(self, i: int) -> ir.Value:
         return self.builder.load(self.builder.gep(self.numbers, [ir.Constant(INT64, i)]))
@@ -69,21 +75,23 @@ class _Order:
 
     def _share(self, value: ir.Value, by: int) -> ir.Value:
         """Return `value` / (k + by)."""
-        inverse = self.builder.fdiv(_real(1.0), self._real(self._shifted(by)))
-        return self.builder.fmul(value, inverse)
+        if by not in self._inverses:
+            order = self._real(self._shifted(by))
+            self._inverses[by] = self.builder.fdiv(_real(1.0), order)
+        return self.builder.fmul(value, self._inverses[by])
 
     def _sum(self, total: ir.Value, rows: tuple[int, ...], first_number: int) -> ir.Value:
         for i, row in enumerate(rows):
-            total = self._fma(self._number(first_number + i), self._load(row, self.k), total)
+            total = self._fma(self._number(first_number + i), self._load(row), total)
         return total
 
     def _write_sum(self, code: int, out: int, total: ir.Value) -> None:
         if code == ACCELERATE:
             rate = self._share(total, 1)
-            self._store(RATES + out, self._shifted(1), rate)
-            self._store(out, self._shifted(2), self._share(rate, 2))
+            self._store(RATES + out, rate, 1)
+            self._store(out, self._share(rate, 2), 2)
         else:
-            self._store(out, self.k, total)
+            self._store(out, total)
 
 
 def _real(value: float) -> ir.Value:
@@ -104,24 +112,24 @@ class First(_Order):
                 self._write_sum(code, out, self._sum(self._number(at), rows, at + 1))
             elif code in (WAVE, SINE):
                 if code == WAVE:
-                    angle = self._fma(self._number(at + 1), self._load(TIME, 0), self._number(at))
+                    angle = self._fma(self._number(at + 1), self._low(TIME), self._number(at))
                 else:
-                    angle = self._load(rows[0], 0)
-                self._store(out, self.k, call_llvm(self.builder, "sin", angle))
-                self._store(out + 1, self.k, call_llvm(self.builder, "cos", angle))
+                    angle = self._low(rows[0])
+                self._store(out, call_llvm(self.builder, "sin", angle))
+                self._store(out + 1, call_llvm(self.builder, "cos", angle))
             elif code in (ROOT, ROUND):
                 function = "sqrt" if code == ROOT else "rint"
-                self._store(out, self.k, call_llvm(self.builder, function, self._load(rows[0], 0)))
+                self._store(out, call_llvm(self.builder, function, self._low(rows[0])))
             elif code == POWER:
-                value = call_llvm(self.builder, "pow", self._load(rows[0], 0), self._number(at))
-                self._store(out, self.k, value)
+                value = call_llvm(self.builder, "pow", self._low(rows[0]), self._number(at))
+                self._store(out, value)
             elif code == ENTRY:
-                self._store(out, self.k, self._entry(rows[0], at, many))
+                self._store(out, self._entry(rows[0], at, many))
             else:
-                value = self.builder.fmul(self._load(rows[0], 0), self._load(rows[1], 0))
+                value = self.builder.fmul(self._low(rows[0]), self._low(rows[1]))
                 if code == SIGNED:
                     value = self.builder.fmul(value, self.direction)
-                self._store(out, self.k, value)
+                self._store(out, value)
             at += many
 
     def _entry(self, row: int, first: int, size: int) -> ir.Value:
@@ -129,7 +137,7 @@ class First(_Order):
 
         The table begins at the number `first`, and repeats.
         """
-        place = self.builder.fptosi(call_llvm(self.builder, "rint", self._load(row, 0)), INT64)
+        place = self.builder.fptosi(call_llvm(self.builder, "rint", self._low(row)), INT64)
         length = ir.Constant(INT64, size)
         # srem gives a negative remainder for a negative place.
         place = self.builder.srem(place, length)
@@ -152,14 +160,14 @@ class Further(_Order):
                 self._write_sum(code, out, total)
                 if code == MOVES:
                     rate = self.builder.fmul(self._real(self.k), total)
-                    self._store(out + 1, self._shifted(-1), rate)
+                    self._store(out + 1, rate, -1)
             elif code == WAVE:
-                speed = self.builder.fmul(self._number(at + 1), self._load(TIME, 1))
+                speed = self.builder.fmul(self._number(at + 1), self._low(TIME, 1))
                 self._turn(out, self._share(speed, 0))
             elif code == SINE:
                 self._sine(out, rows[0])
             elif code in (ROUND, ENTRY):
-                self._store(out, self.k, _real(0.0))
+                self._store(out, _real(0.0))
             elif code == ROOT:
                 self._root(out, rows[0])
             elif code == POWER:
@@ -187,13 +195,14 @@ class Further(_Order):
             total = builder.phi(DOUBLE)
             total.add_incoming(zero, before)
             sums.append((total, a, b, weighted))
-        rest = builder.sub(self.k, j)
+        behind = builder.gep(self.series, [j])
+        ahead = builder.gep(self.series, [builder.sub(self.k, j)])
         totals = []
         for total, a, b, weighted in sums:
-            factor = self._load(a, j)
+            factor = builder.load(self._place(behind, a, 0))
             if weighted:
                 factor = builder.fmul(self._real(j), factor)
-            totals.append(self._fma(factor, self._load(b, rest), total))
+            totals.append(self._fma(factor, builder.load(self._place(ahead, b, 0)), total))
         following = builder.add(j, ir.Constant(INT64, 1))
         j.add_incoming(following, loop)
         for (total, *_), new in zip(sums, totals, strict=True):
@@ -211,58 +220,54 @@ class Further(_Order):
             builder.uitofp(builder.icmp_signed(">", self.k, ir.Constant(INT64, order)), DOUBLE)
             for order in (1, 2)
         ]
-        before_last = self._shifted(-1)
         for pair, total in zip(pairs, middles, strict=True):
             a, b, weighted = pair
-            first = builder.fmul(masks[0], self._load(a, 1))
-            total = self._fma(first, self._load(b, before_last), total)
-            second = builder.fmul(masks[1], self._load(b, 1))
+            first = builder.fmul(masks[0], self._low(a, 1))
+            total = self._fma(first, self._load(b, -1), total)
+            second = builder.fmul(masks[1], self._low(b, 1))
             if weighted:
-                second = builder.fmul(second, self._real(before_last))
-            found[pair] = self._fma(second, self._load(a, before_last), total)
+                second = builder.fmul(second, self._real(self._shifted(-1)))
+            found[pair] = self._fma(second, self._load(a, -1), total)
         return found
 
     def _product(self, code: int, out: int, a: int, b: int) -> None:
         total = self.middles[a, b, False]
         if a == b:
-            doubled = self.builder.fmul(_real(2.0), self._load(a, 0))
-            total = self._fma(doubled, self._load(a, self.k), total)
+            doubled = self.builder.fmul(_real(2.0), self._low(a))
+            total = self._fma(doubled, self._load(a), total)
         else:
-            total = self._fma(self._load(b, 0), self._load(a, self.k), total)
-            total = self._fma(self._load(a, 0), self._load(b, self.k), total)
+            total = self._fma(self._low(b), self._load(a), total)
+            total = self._fma(self._low(a), self._load(b), total)
         if code == SIGNED:
             total = self.builder.fmul(total, self.direction)
-        self._store(out, self.k, total)
+        self._store(out, total)
 
     def _turn(self, out: int, angle: ir.Value) -> None:
         """Continue sine and cosine of an angle that is linear in time."""
-        before = self._shifted(-1)
-        self._store(out, self.k, self.builder.fmul(angle, self._load(out + 1, before)))
-        back = self.builder.fmul(self.builder.fneg(angle), self._load(out, before))
-        self._store(out + 1, self.k, back)
+        self._store(out, self.builder.fmul(angle, self._load(out + 1, -1)))
+        back = self.builder.fmul(self.builder.fneg(angle), self._load(out, -1))
+        self._store(out + 1, back)
 
     def _sine(self, out: int, angle: int) -> None:
-        newest = self.builder.fmul(self._real(self.k), self._load(angle, self.k))
-        s = self._fma(newest, self._load(out + 1, 0), self.middles[angle, out + 1, True])
-        c = self._fma(newest, self._load(out, 0), self.middles[angle, out, True])
-        self._store(out, self.k, self._share(s, 0))
-        self._store(out + 1, self.k, self.builder.fneg(self._share(c, 0)))
+        newest = self.builder.fmul(self._real(self.k), self._load(angle))
+        s = self._fma(newest, self._low(out + 1), self.middles[angle, out + 1, True])
+        c = self._fma(newest, self._low(out), self.middles[angle, out, True])
+        self._store(out, self._share(s, 0))
+        self._store(out + 1, self.builder.fneg(self._share(c, 0)))
 
     def _root(self, out: int, square: int) -> None:
-        rest = self.builder.fsub(self._load(square, self.k), self.middles[out, out, False])
-        doubled = self.builder.fmul(_real(2.0), self._load(out, 0))
-        self._store(out, self.k, self.builder.fdiv(rest, doubled))
+        rest = self.builder.fsub(self._load(square), self.middles[out, out, False])
+        doubled = self.builder.fmul(_real(2.0), self._low(out))
+        self._store(out, self.builder.fdiv(rest, doubled))
 
     def _power(self, out: int, base: int, exponent: ir.Value) -> None:
         # For p = b^e, k b_0 p_k is the sum of (e (k - j) - j) b_(k-j) p_j over j < k.
-        whole = self._fma(
-            self._load(base, self.k), self._load(out, 0), self.middles[out, base, False]
-        )
+        whole = self._fma(self._load(base), self._low(out), self.middles[out, base, False])
         scale = self.builder.fmul(exponent, self._real(self.k))
         less = self.builder.fadd(exponent, _real(1.0))
         less = self.builder.fmul(less, self.middles[out, base, True])
         total = self.builder.fsub(self.builder.fmul(scale, whole), less)
-        self._store(out, self.k, self.builder.fdiv(self._share(total, 0), self._load(base, 0)))
+        self._store(out, self.builder.fdiv(self._share(total, 0), self._low(base)))
 
 
 def _convolved(operation: Shape) -> list[tuple[int, int, bool]]:

@@ -52,6 +52,13 @@ _regime_of = inner(regime_of)
 
 
 @inner
+def _count_loss(case, mode, summary):
+    """Count a contact loss in the kept revolutions. Flanks that have parted lost it before."""
+    if mode.period >= case.first_kept and not mode.parted:
+        summary.contact_losses += 1
+
+
+@inner
 def _cross(case, mode, summary):
     """Enter the next regime in the direction of motion."""
     mode.level = level(case, mode.regime, mode.direction)
@@ -60,8 +67,7 @@ def _cross(case, mode, summary):
         mode.regime = NORMAL_MESH if mode.direction > 0.0 else INVERSE_MESH
     else:
         mode.regime = CONTACT_LOSS
-        if mode.period >= case.first_kept and not mode.parted:
-            summary.contact_losses += 1
+        _count_loss(case, mode, summary)
     mode.parted = mode.on_force = False
 
 
@@ -80,8 +86,8 @@ def _settle_regime(case, mode, summary):
     presses = mode.pressing[0] + mode.pressing[1] + mode.pressing[2] > 0.0
     if presses == (mode.regime == NORMAL_MESH):
         return
-    if not presses and mode.period >= case.first_kept and not mode.parted:
-        summary.contact_losses += 1
+    if not presses:
+        _count_loss(case, mode, summary)
     mode.regime = NORMAL_MESH if presses else CONTACT_LOSS
     mode.parted = False
 
@@ -229,15 +235,14 @@ def _follow(case, segment, mode, state, event, summary):
     elif event == GAP_CROSSED:
         mode.on_gap = True
         leaves = mode.regime == INVERSE_MESH
-        if leaves and mode.period >= case.first_kept and not mode.parted:
-            summary.contact_losses += 1
+        if leaves:
+            _count_loss(case, mode, summary)
         mode.regime = CONTACT_LOSS if leaves else INVERSE_MESH
         mode.parted = False
     elif event == PARTED:
         mode.on_force = True
+        _count_loss(case, mode, summary)
         mode.parted = not mode.parted
-        if mode.parted and mode.period >= case.first_kept:
-            summary.contact_losses += 1
     elif event >= PAIR_TURNED:
         pair = event - PAIR_TURNED
         mode.on_pair[pair] = 1.0
@@ -312,8 +317,8 @@ def run(
     Parameters
     ----------
     cases : ndarray of `CASE`, shape (1,)
-    segments : ndarray of `SEGMENT`
-        Segments of a mesh period, in their order. The last one ends with the period.
+    segments : ndarray of `SEGMENT`, shape (1 or periods, segments)
+        Segments of a mesh period, of each one if the speed changes. The last ends with the period.
     variants : ndarray of int, shape (periods + 1,)
         The kind of each period. Periods differ if single teeth have factors.
     tape : tuple of ndarray
@@ -350,15 +355,15 @@ def run(
     series = unowned(workspace)
     table, scaled = series[-TABLE_ROWS:], series[-TABLE_ROWS - 1]
     if mode.stage != UNDER_WAY:
-        pairs, kind = segments[0].pairs, variants[mode.period]
+        pairs, kind = segments[0, 0].pairs, variants[mode.period]
         _start(case, mode, pairs, state, tape, kind, series, strobes, summary)
     last = summary.steps + most_turns
     while summary.steps < last:
-        segment = segments[mode.segment]
+        segment = segments[mode.period % segments.shape[0], mode.segment]
         if mode.time >= segment.end:
             mode.segment += 1
             mode.entered = True
-            if mode.segment == segments.size:
+            if mode.segment == segments.shape[1]:
                 following = variants[mode.period + 1]
                 _pass_boundary(case, mode, state, tape, following, series, strobes, summary)
                 if mode.period == case.periods:

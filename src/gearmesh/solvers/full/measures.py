@@ -1,10 +1,13 @@
 """What is measured on a run in the six coordinates: extrema, shares and samples."""
 
+from typing import NamedTuple
+
 import numpy as np
 
 from gearmesh.model.contact import CONTACT_LOSS, INVERSE_MESH
 from gearmesh.solvers.compilation import inner
 from gearmesh.solvers.full.roots import evaluate, evaluate_with_slope
+from gearmesh.solvers.full.speeds import time_of_boundary, time_within
 from gearmesh.solvers.full.tape import (
     BEARINGS,
     FRICTION,
@@ -40,6 +43,29 @@ SAMPLE = np.dtype(
     ]
 )
 
+
+class Step(NamedTuple):
+    """A step of a run.
+
+    Attributes
+    ----------
+    start, duration : float
+        In tau_s; `start` counts from the start of the run.
+    period, segment : int
+        The mesh period, and the place of the segment in it.
+    y, gap : ndarray, shape (order + 1,)
+        Taylor coefficients of y and, if the backlash varies, of y + s(t), from the start of the
+        step.
+    """
+
+    start: float
+    duration: float
+    period: int
+    segment: int
+    y: np.ndarray
+    gap: np.ndarray
+
+
 _GRID = 8
 _MOST_ITERATIONS = 20
 
@@ -66,7 +92,7 @@ def record_extremum(case, mode, y, extrema, summary):
     if n >= extrema.size:
         return
     extremum = extrema[n]
-    extremum.time = mode.period * case.period + mode.time
+    extremum.time = time_of_boundary(case, mode.period) + mode.time
     extremum.y = y
     extremum.kind = MAXIMUM if mode.direction > 0.0 else MINIMUM
 
@@ -76,12 +102,12 @@ def sample(case, mode, series, until, samples, per_period, summary):
     """Write the samples before `until`."""
     first = (mode.period - case.first_kept) * per_period
     while summary.samples - first < per_period:
-        time = (summary.samples - first) * (case.period / per_period)
+        time = time_within(case, mode.period, summary.samples - first, per_period)
         if time >= until:
             return
         since = time - mode.time
         sample = samples[summary.samples]
-        sample.time = mode.period * case.period + time
+        sample.time = time_of_boundary(case, mode.period) + time
         sample.y = evaluate(series[Y], case.order, since)
         sample.v, sample.a = evaluate_with_slope(series[V], case.order - 1, since)
         degree = case.order - 2

@@ -8,6 +8,7 @@ a run in this process first needs the function.
 
 import ctypes
 from collections.abc import Iterable, Sequence
+from dataclasses import replace
 from functools import cache, lru_cache
 from itertools import count
 from typing import Any, NamedTuple
@@ -17,9 +18,13 @@ from llvmlite import binding, ir
 from numba import types
 from numba.extending import intrinsic
 
+from gearmesh.model.motion import ROTATION_2, ROTATION_3
 from gearmesh.model.problem import Problem
 from gearmesh.solvers.full.coefficients import First, Further, Shape
+from gearmesh.solvers.full.coordinates import embedding, projected
 from gearmesh.solvers.full.tape import (
+    ACCELERATE,
+    COORDINATES,
     ENTRY,
     FIRST_FREE,
     POWER,
@@ -55,11 +60,14 @@ class Recurrences(NamedTuple):
         numbers begin. A branch that cannot occur has zeros.
     height : int
         Number of rows that the table of series needs.
+    constants : ndarray of int, shape (n, 2)
+        Places in `numbers` of the constants of accelerations, and their coordinates.
     """
 
     numbers: np.ndarray
     branches: np.ndarray
     height: int
+    constants: np.ndarray
 
 
 def recurrences(problem: Problem, segments: Iterable[float], sampled: bool) -> Recurrences:
@@ -73,7 +81,25 @@ def recurrences(problem: Problem, segments: Iterable[float], sampled: bool) -> R
     sampled : bool
         As for `gearmesh.solvers.full.coordinates.embedding`.
     """
-    return _recurrences(laws_of(problem), tuple(segments), sampled)
+    terms = problem.terms
+    both = terms.torque_harmonics_3, terms.torque_harmonics_2
+    constant = [sum(one.cosine for one in several if one.order == 0.0) for several in both]
+    if not any(constant):
+        return _recurrences(laws_of(problem), tuple(segments), sampled)
+    # Constant moments add to constants. Runs that differ in them share what is recorded and
+    # compiled: a drive that holds the speed changes them all the time.
+    varying = [tuple(one for one in several if one.order != 0.0) for several in both]
+    terms = replace(terms, torque_harmonics_3=varying[0], torque_harmonics_2=varying[1])
+    bare = replace(problem, terms=terms)
+    found = _recurrences(laws_of(bare), tuple(segments), sampled)
+    accelerations = np.zeros(12)
+    for i, moment, wheel in zip(
+        (ROTATION_3, ROTATION_2), constant, problem.both_wheels, strict=True
+    ):
+        accelerations[i] = moment / wheel.inertia
+    numbers, (places, coordinates) = found.numbers.copy(), found.constants.T
+    numbers[places] += projected(accelerations, embedding(bare, sampled))[coordinates]
+    return found._replace(numbers=numbers)
 
 
 @lru_cache(maxsize=256)
@@ -81,6 +107,7 @@ def _recurrences(laws: Problem, segments: tuple[float, ...], sampled: bool) -> R
     numbers: list[float] = []
     branches, wanted = [], []
     height = FIRST_FREE
+    constants = []
     for parts in record(laws, segments, sampled):
         if not parts:
             branches.append([0] * (2 * N_PARTS))
@@ -89,14 +116,19 @@ def _recurrences(laws: Problem, segments: tuple[float, ...], sampled: bool) -> R
         places = []
         for part in parts:
             places.append(len(numbers))
-            numbers += [number for operation in part for number in _numbers(operation)]
+            for operation in part:
+                if operation[0] == ACCELERATE:
+                    constants.append((len(numbers), operation[1] - COORDINATES))
+                numbers += _numbers(operation)
             height = max([height, *(out + 2 for _, out, _ in part)])
         places[FORCES] = places[MOTION]  # this function carries out the operations of y too
         moves, *others = (tuple(_shape(operation) for operation in part) for part in parts)
         forces, presses, sample = others
         wanted.append(((moves, ()), (forces, moves), (presses, ()), (sample, ())))
         branches.append([0] * N_PARTS + places)
-    found = Recurrences(np.array(numbers), np.array(branches, np.int64), height)
+    found = Recurrences(
+        np.array(numbers), np.array(branches, np.int64), height, np.array(constants)
+    )
     for branch, functions in zip(found.branches, wanted, strict=True):
         for part, function in enumerate(functions):
             branch[part] = _compiled.get(function) or _compiles_itself(branch, part, function)

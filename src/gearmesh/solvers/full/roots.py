@@ -11,6 +11,8 @@ import math
 import numpy as np
 from numba import njit
 
+from gearmesh.solvers.lanes.operations import fma
+
 MAX_DEGREE = 28
 """Highest degree of a polynomial."""
 
@@ -29,6 +31,7 @@ TABLE_ROWS = _DEPTH + 3
 """Rows of the workspace of `first_change`."""
 
 _MOST_ITERATIONS = 100
+_UNIT = 0.5 * np.finfo(np.float64).eps
 
 
 def _bernstein_weights() -> np.ndarray:
@@ -53,7 +56,7 @@ def evaluate(coefficients, degree, s):
     """Return the polynomial at `s`."""
     value = coefficients[degree]
     for k in range(degree - 1, -1, -1):
-        value = value * s + coefficients[k]
+        value = fma(value, s, coefficients[k])
     return value
 
 
@@ -63,8 +66,8 @@ def evaluate_with_slope(coefficients, degree, s):
     value = coefficients[degree]
     slope = 0.0
     for k in range(degree - 1, -1, -1):
-        slope = slope * s + value
-        value = value * s + coefficients[k]
+        slope = fma(slope, s, value)
+        value = fma(value, s, coefficients[k])
     return value, slope
 
 
@@ -72,8 +75,13 @@ def evaluate_with_slope(coefficients, degree, s):
 def refine(coefficients, degree, low, high, sign):
     """Return where the polynomial changes sign between `low`, where it has `sign`, and `high`.
 
-    Newton's method, kept in a bracket that shrinks.
+    Newton's method, kept in a bracket that shrinks. It ends where the value is a rounding error:
+    there its steps no longer shrink, and the bracket would be halved dozens of times for nothing.
     """
+    rounding = 0.0
+    for k in range(degree + 1):
+        rounding += abs(coefficients[k])
+    rounding *= _UNIT
     at = 0.5 * (low + high)
     width = high - low
     for _ in range(_MOST_ITERATIONS):
@@ -83,6 +91,8 @@ def refine(coefficients, degree, low, high, sign):
         else:
             high = at
         following = at - value / slope if slope != 0.0 else low
+        if abs(value) <= rounding:
+            return following if low < following < high else at
         # Bisect where Newton's method leaves the bracket, or does not shrink it.
         if not low < following < high or abs(following - at) > 0.5 * width:
             following = 0.5 * (low + high)

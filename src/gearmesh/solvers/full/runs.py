@@ -8,7 +8,6 @@ truncated Fourier stiffness), and checks the others.
 import math
 from collections.abc import Callable, Iterator
 from dataclasses import replace
-from typing import NamedTuple
 
 import numpy as np
 from numba import njit
@@ -18,11 +17,12 @@ from gearmesh.model.contact import CONTACT_LOSS, dynamic_force
 from gearmesh.model.motion import ROTATION_2, ROTATION_3, Y_2, Y_3, start
 from gearmesh.model.problem import Branches, Problem, State
 from gearmesh.model.segments import segments
+from gearmesh.model.speeds import time_of
 from gearmesh.solvers import limits
 from gearmesh.solvers.compilation import persistent
 from gearmesh.solvers.full import kernel
 from gearmesh.solvers.full.coordinates import embedding, kinds_of_period, projected, signs_act
-from gearmesh.solvers.full.measures import SAMPLE, SUMMARY
+from gearmesh.solvers.full.measures import SAMPLE, SUMMARY, Step
 from gearmesh.solvers.full.recurrences import raise_failures, recurrences
 from gearmesh.solvers.full.roots import MAX_DEGREE, TABLE_ROWS, WIDTH
 from gearmesh.solvers.full.series import CASE, CONTINUED, MODE, SEGMENT
@@ -41,28 +41,6 @@ from gearmesh.solvers.response import (
 _EXTREMA_PER_PERIOD = 64
 # Steps between two returns to Python, where an interruption is noticed: some 0.1 s.
 _MOST_TURNS = 10_000
-
-
-class Step(NamedTuple):
-    """A step of a run.
-
-    Attributes
-    ----------
-    start, duration : float
-        In tau_s; `start` counts from the start of the run.
-    period, segment : int
-        The mesh period, and the place of the segment in it.
-    y, gap : ndarray, shape (order + 1,)
-        Taylor coefficients of y and, if the backlash varies, of y + s(t), from the start of the
-        step.
-    """
-
-    start: float
-    duration: float
-    period: int
-    segment: int
-    y: np.ndarray
-    gap: np.ndarray
 
 
 def _build_run(key: str, cache: bool) -> Callable[..., bool]:
@@ -98,24 +76,28 @@ def integrate(
     estimate_errors : bool
         Whether the run has a companion, `LOOSENING` times less accurate and displaced by the
         tolerance at the start, whose difference gives `Response.y_max_error`, `y_min_error` and
-        `sensitive`. Costs as much as the run.
+        `sensitive`.
 
     Returns
     -------
     Response
         A run that fails has a status other than ``"ok"``.
     """
-    run = _Run(problem, tolerance, samples_per_period, order or suitable_order(tolerance))
+    run = _Run(problem, samples_per_period > 0)
     companion = None
     if estimate_errors:
-        loose = tolerance * LOOSENING
-        other = _Run(problem, loose, 0, order or suitable_order(loose), tolerance)
-        companion = Companion(other.summary, other.strobes)
+        run.integrate(tolerance * LOOSENING, order, displacement=tolerance)
+        companion = Companion(run.summary, run.strobes)
+    room = _EXTREMA_PER_PERIOD * problem.kept_periods
+    run.integrate(tolerance, order, samples_per_period, room)
+    found = run.summary["extrema"]
+    if found > room:
+        run.integrate(tolerance, order, samples_per_period, found)
     return assemble(
         problem,
         run.summary,
         run.strobes,
-        run.extrema,
+        run.extrema[:found],
         run.final_state(),
         companion,
         tolerance,
@@ -127,7 +109,7 @@ def integrate(
 
 def steps_of(problem: Problem, tolerance: float) -> Iterator[Step]:
     """Yield the steps of a run; they end early if it cannot be integrated."""
-    return _Run(problem, tolerance, 0, suitable_order(tolerance)).steps()
+    return _Run(problem, False).steps(tolerance)
 
 
 class Propagation:
@@ -157,15 +139,19 @@ class Propagation:
             kept_revolutions=0,
             initial_state=None,
         )
-        self._run = _Run(run, tolerance, 0, suitable_order(tolerance), share=share)
+        self._run = _Run(run, False, share)
+        self._tolerance = tolerance
 
-    def end(self, six: np.ndarray) -> np.ndarray:
+    def end(self, six: np.ndarray, first: int = 0, last: int | None = None) -> np.ndarray:
         """Return the coordinates and rates at the end of the motion, shape (12,).
 
         Parameters
         ----------
         six : ndarray, shape (12,)
             The six coordinates at the start, then their rates.
+        first, last : int
+            The motion starts after `first` of the mesh periods and ends after `last`; by default
+            after all.
 
         Raises
         ------
@@ -173,7 +159,8 @@ class Propagation:
             If it cannot be integrated.
         """
         self._run.start = six
-        self._run.integrate(0, 0)
+        self._run.part = first, self._run.problem.periods if last is None else last
+        self._run.integrate(self._tolerance)
         if self._run.summary["status"] != OK:
             status = STATUSES[self._run.summary["status"]]
             raise NoOrbit(f"the motion cannot be integrated over the period: {status}")
@@ -181,74 +168,78 @@ class Propagation:
 
 
 class _Run:
-    """A run from its start to its end.
+    """A run that can be integrated several times, from any start and with any tolerance.
 
-    `displacement` displaces wheel 3 at the start. Each mesh period is cut off after a `share` of
-    it. If there is no room for all extrema of the run, it is integrated again with enough room.
+    Each mesh period is cut off after a `share` of it. `part` says between which mesh periods it is
+    integrated: by default over all.
     """
 
-    def __init__(
-        self,
-        problem: Problem,
-        tolerance: float,
-        samples_per_period: int,
-        order: int,
-        displacement: float = 0.0,
-        share: float = 1.0,
-    ) -> None:
+    def __init__(self, problem: Problem, sampled: bool, share: float = 1.0) -> None:
         self.problem = problem
-        self.embedding = embedding(problem, samples_per_period > 0)
+        self.embedding = embedding(problem, sampled)
         kinds, variants = kinds_of_period(problem)
-        found = recurrences(problem, kinds, samples_per_period > 0)
+        found = recurrences(problem, kinds, sampled)
+        self._case = _case(problem, self.embedding.shape[1])
         self._arguments = (
-            _case(problem, tolerance, order, self.embedding.shape[1]),
             _segments(problem, share),
             variants,
             (found.numbers, found.branches),
         )
-        self._order = order
         self._series = np.zeros((found.height + TABLE_ROWS + 1, WIDTH))
-        self.extrema = np.zeros(0, EXTREMUM)
         self.start = np.concatenate(start(problem))
-        self.start[ROTATION_3] += displacement
-        self.integrate(samples_per_period, _EXTREMA_PER_PERIOD * problem.kept_periods)
-        found = self.summary["extrema"]
-        if found > self.extrema.size:
-            self.integrate(samples_per_period, found)
-        self.extrema = self.extrema[:found]
+        self.part = 0, problem.periods
 
-    def integrate(self, samples_per_period: int, room: int) -> None:
-        self._begin(samples_per_period, room)
+    def integrate(
+        self,
+        tolerance: float,
+        order: int | None = None,
+        samples_per_period: int = 0,
+        room: int = 0,
+        displacement: float = 0.0,
+    ) -> None:
+        """Integrate the run from its start to its end.
+
+        There is `room` for that many extrema; further ones are only counted. `displacement`
+        displaces wheel 3 at the start.
+        """
+        self._begin(tolerance, order, samples_per_period, room, displacement)
         while not self._go_on(samples_per_period, _MOST_TURNS):
             pass
 
-    def steps(self) -> Iterator[Step]:
-        """Integrate the run once more, and yield its steps."""
-        self._begin(0, 0)
-        mode, order = self.mode[0], self._order
+    def steps(self, tolerance: float) -> Iterator[Step]:
+        """Integrate the run, and yield its steps."""
+        self._begin(tolerance, None, 0, 0, 0.0)
+        mode, size = self.mode[0], int(self._case["order"][0]) + 1
         taken, reached = 0, 0.0
         while not self._go_on(0, 1):
             if self.summary["steps"] == taken:
                 continue
             taken, start = int(self.summary["steps"]), reached
-            reached = mode["period"] * self.problem.period + mode["time"]
-            yield Step(
-                start,
-                reached - start,
-                int(mode["period"]),
-                int(mode["segment"]),
-                self._series[Y, : order + 1].copy(),
-                self._series[GAP, : order + 1].copy(),
-            )
+            reached = float(mode["period"] * self.problem.period + mode["time"])
+            place = int(mode["period"]), int(mode["segment"])
+            rows = (self._series[row, :size].copy() for row in (Y, GAP))
+            yield Step(start, reached - start, *place, *rows)
 
-    def _begin(self, samples_per_period: int, room: int) -> None:
+    def _begin(
+        self,
+        tolerance: float,
+        order: int | None,
+        samples_per_period: int,
+        room: int,
+        displacement: float,
+    ) -> None:
+        self._case["tolerance"] = tolerance
+        self._case["order"] = order or suitable_order(tolerance)
         summaries = np.zeros(1, SUMMARY)
         summaries["y_max"], summaries["y_min"] = -np.inf, np.inf
         summaries["least_contact_force"] = np.inf
         summaries["extremes"] = np.inf, -np.inf
         self.summary = summaries[0]
-        self.state = projected(self.start, self.embedding)
+        start = self.start.copy()
+        start[ROTATION_3] += displacement
+        self.state = projected(start, self.embedding)
         self.mode = _mode(self.problem)
+        self.mode["period"], self._case["periods"] = self.part
         self.strobes = np.zeros((self.problem.periods + 1, 2))
         self.extrema = np.zeros(room, EXTREMUM)
         self.samples = np.zeros(samples_per_period * self.problem.kept_periods, SAMPLE)
@@ -257,6 +248,7 @@ class _Run:
     def _go_on(self, samples_per_period: int, most_turns: int) -> bool:
         """Continue the run by some steps, and return whether it is over."""
         over = _compiled_run(
+            self._case,
             *self._arguments,
             self.state,
             self.mode,
@@ -334,10 +326,12 @@ def suitable_order(tolerance: float) -> int:
     return min(MAX_DEGREE, max(8, math.ceil(5.0 - 0.5 * math.log(tolerance))))
 
 
-def _case(problem: Problem, tolerance: float, order: int, coordinates: int) -> np.ndarray:
+def _case(problem: Problem, coordinates: int) -> np.ndarray:
     case = np.zeros(1, CASE)
     # Numbers that have the same name and meaning in both.
-    for name in ("period", "initial_phase", "backlash", "start_period", "periods"):
+    for name in ("nu", "acceleration", "period", "initial_phase", "backlash"):
+        case[name] = getattr(problem, name)
+    for name in ("start_period", "periods"):
         case[name] = getattr(problem, name)
     case["varying_backlash"] = problem.terms.backlash_varies
     case["non_adhesive"] = problem.terms.non_adhesive
@@ -352,22 +346,28 @@ def _case(problem: Problem, tolerance: float, order: int, coordinates: int) -> n
     case["acting"] = embedding(problem).shape[1]
     case["segments"] = len(segments(problem))
     case["first_kept"] = problem.periods - problem.kept_periods
-    case["tolerance"] = tolerance
     case["longest_step"] = limits.longest_step(problem)
     case["farthest"] = limits.farthest(problem)
     case["most_steps"] = limits.most_steps(problem)
-    case["order"] = order
     return case
 
 
 def _segments(problem: Problem, share: float = 1.0) -> np.ndarray:
-    """Return the segments in the first `share` of a mesh period, in the form the kernel takes."""
-    parts = [
-        (min(part.end, share) * problem.period, part.gamma, len(part.pairs))
-        for part in segments(problem)
-        if part.start < share
-    ]
-    return np.array(parts, SEGMENT)
+    """Return the segments in the first `share` of a mesh period, in the form the kernel takes.
+
+    They have one row, or one for each mesh period if the speed changes.
+    """
+    parts = [part for part in segments(problem) if part.start < share]
+    found = np.zeros((1 if problem.final_nu is None else problem.periods, len(parts)), SEGMENT)
+    ends = np.array([min(part.end, share) for part in parts])
+    found["gamma"] = [part.gamma for part in parts]
+    found["pairs"] = [len(part.pairs) for part in parts]
+    if problem.final_nu is None:
+        found["end"] = ends * problem.period
+        return found
+    begins = np.arange(problem.periods)[:, None]
+    found["end"] = time_of(problem, ends, before=begins)
+    return found
 
 
 def _samples(rows: np.ndarray, extremes: np.ndarray) -> Samples:

@@ -16,6 +16,7 @@ from gearmesh.solvers.full.recurrences import (
     SAMPLED,
     carry_out,
 )
+from gearmesh.solvers.full.speeds import write_phase
 from gearmesh.solvers.full.tape import (
     BRACKET,
     CONSTANT,
@@ -33,6 +34,8 @@ from gearmesh.solvers.lanes.rows import pointer_to
 
 CASE = np.dtype(
     [
+        ("nu", np.float64),
+        ("acceleration", np.float64),
         ("period", np.float64),
         ("initial_phase", np.float64),
         ("backlash", np.float64),
@@ -153,9 +156,7 @@ def _carry_out(mode, tape, branch, part, start, stop, series):
 @inner
 def begin(case, mode, state, tape, variant, series):
     """Write the first terms of the series: the state, time, and y and y'."""
-    periods = case.start_period + mode.period + case.initial_phase
-    series[TIME, 0] = periods + mode.time / case.period
-    series[TIME, 1] = 1.0 / case.period
+    write_phase(case, mode, series[TIME])
     series[CONSTANT, 0] = 1.0
     for i in range(case.coordinates):
         series[i, 0], series[i, 1] = state[i], state[6 + i]

@@ -136,9 +136,13 @@ class _Traced:
 
 
 class _Trace:
-    """The operations recorded so far, each only once."""
+    """The operations recorded so far, each only once.
 
-    def __init__(self) -> None:
+    TIME is linear in time if the speed is `steady`.
+    """
+
+    def __init__(self, steady: bool) -> None:
+        self.steady = steady
         self.operations: list[Operation] = []
         self._known: dict[tuple[Any, ...], int] = {}
         self._moduli: dict[int, int] = {}
@@ -207,7 +211,7 @@ class _Trace:
                 _Traced(self, {}, float(np.sin(angle.constant))),
                 _Traced(self, {}, float(np.cos(angle.constant))),
             )
-        if angle.terms.keys() == {TIME}:
+        if self.steady and angle.terms.keys() == {TIME}:
             operands: tuple[Any, ...] = (angle.terms[TIME], angle.constant)
             out = self._result(WAVE, operands, rows=2)
         else:
@@ -231,9 +235,17 @@ def laws_of(problem: Problem) -> Problem:
     """Return `problem` with fixed values for all that its equations of motion do not contain.
 
     Time enters the laws only through the angles of the wheels. If time is counted in mesh periods,
-    the laws are the same for all mesh frequencies.
+    the laws are the same for all mesh frequencies, and for all that change.
     """
-    return replace(problem, nu=TURN, revolutions=1, kept_revolutions=0, initial_state=None)
+    final_nu = None if problem.final_nu is None else TURN
+    return replace(
+        problem,
+        nu=TURN,
+        final_nu=final_nu,
+        revolutions=1,
+        kept_revolutions=0,
+        initial_state=None,
+    )
 
 
 def record(
@@ -277,7 +289,7 @@ def _record(
     problem: Problem, mode: motion.Mode, columns: np.ndarray, signed: bool
 ) -> list[list[Operation]]:
     """Return the operations of a branch in four parts, as `record` does."""
-    trace = _Trace()
+    trace = _Trace(steady=problem.final_nu is None)
     time = trace.row(TIME)
     n = columns.shape[1]
     q, v = (

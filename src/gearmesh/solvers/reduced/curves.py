@@ -189,29 +189,29 @@ def _land(statement, unit, points, events, row, origin, normal, corrections, roo
 
 
 @inner
-def _predict(points, last, length, nodes, table):
-    """Write the predicted place of the next point, `length` ahead of the last, to the next row.
+def _predict(points, last, length, nodes, slopes, table):
+    """Write the predicted place of the next point to the next row.
 
-    The prediction extrapolates a polynomial in the arclength. The polynomial matches the last
-    points and their tangents.
+    The next point lies in the plane across the tangent of the last one, `length` ahead of it. The
+    prediction extrapolates a polynomial in the distance along this tangent, so it lies in the
+    plane too. The polynomial matches the last points and their tangents.
     """
-    count, s = 2 * min(last + 1, _HISTORY), 0.0
+    count = 2 * min(last + 1, _HISTORY)
+    ahead = points[last, TANGENT : TANGENT + DIMENSIONS]
     for i in range(0, count, 2):
-        if i > 0:
-            chord, along = 0.0, 0.0
-            newer, older = points[last - i // 2 + 1], points[last - i // 2]
-            for j in range(DIMENSIONS):
-                chord += (newer[j] - older[j]) ** 2
-                along += newer[TANGENT + j] * older[TANGENT + j]
-            s -= np.sqrt(chord) * (1.0 + (1.0 - along) / 12.0)
-        nodes[i] = nodes[i + 1] = s
+        distance, slope = 0.0, 0.0
+        for j in range(DIMENSIONS):
+            distance += ahead[j] * (points[last - i // 2, j] - points[last, j])
+            slope += ahead[j] * points[last - i // 2, TANGENT + j]
+        nodes[i] = nodes[i + 1] = distance
+        slopes[i] = slopes[i + 1] = slope
     for j in range(DIMENSIONS):
         for i in range(count):
             table[i] = points[last - i // 2, j]
         for order in range(1, count):
             for i in range(count - 1, order - 1, -1):
                 if order == 1 and i % 2 == 1:
-                    table[i] = points[last - i // 2, TANGENT + j]
+                    table[i] = points[last - i // 2, TANGENT + j] / slopes[i]
                 else:
                     table[i] = (table[i] - table[i - 1]) / (nodes[i] - nodes[i - order])
         value = table[count - 1]
@@ -266,7 +266,7 @@ def trace(statement, unit, corrections, length, longest, limits, points, events,
     per_period = len(samples) * len(segments) // statement[4]
     room = samples, per_period, segments, matrix
     normal, origin = points[0, TANGENT : TANGENT + DIMENSIONS].copy(), np.empty(DIMENSIONS)
-    nodes, table = np.empty(2 * _HISTORY), np.empty(2 * _HISTORY)
+    nodes, slopes, table = np.empty((3, 2 * _HISTORY))
     origin[:] = points[0, :DIMENSIONS]
     most = corrections if len(points) == 2 else 0
     row = 0
@@ -275,7 +275,7 @@ def trace(statement, unit, corrections, length, longest, limits, points, events,
         if row > 0:
             normal[:] = before[TANGENT : TANGENT + DIMENSIONS]
             origin[:] = before[:DIMENSIONS] + length * normal
-            _predict(points, row - 1, length, nodes, table)
+            _predict(points, row - 1, length, nodes, slopes, table)
         most = corrections if row > 0 or len(points) == 2 else 0
         landed = _land(statement, unit, points, events, row, origin, normal, most, room)
         if row == 0:

@@ -62,9 +62,11 @@ _scalar_sweep = persistent(_build_scalar_sweep)
 def is_reducible(problem: Problem) -> bool:
     """Return whether a problem has equal wheels without run-out and no term beyond the paper's.
 
-    Profile deviation and a truncated series of the stiffness are such terms.
+    Profile deviation, a truncated series of the stiffness and a speed that changes are such terms.
     """
     if problem.wheels is not None or problem.terms != GeneralTerms():
+        return False
+    if problem.final_nu is not None:
         return False
     return not (problem.has_run_out or problem.deviation or problem.stiffness_harmonics)
 

@@ -9,8 +9,8 @@ import numpy as np
 import xarray as xr
 
 from gearmesh.errors import InputError
-from gearmesh.identification.design import Sample
 from gearmesh.identification.factors import FACTORS, KINDS
+from gearmesh.identification.sampling.design import Sample
 from gearmesh.identification.settings import Design
 
 
@@ -27,7 +27,7 @@ class Samples:
     places : dict of str to ndarray, shape (n,)
         Factor -> place in the unit cube of its design, NaN where the design does not vary it.
     measured : dict of str to ndarray, shape (n,)
-        Column -> what was measured, see `gearmesh.identification.survey`.
+        Column -> what was measured, see `gearmesh.identification.sampling.survey`.
     """
 
     design: np.ndarray

@@ -5,11 +5,16 @@ from typing import Any
 
 import numpy as np
 
-from gearmesh.identification import inference, prediction, sensitivity, synthetic
-from gearmesh.identification.analysis import Analysis, Family
+from gearmesh.identification.estimation import (
+    inference,
+    prediction,
+    sensitivity,
+    synthetic,
+)
+from gearmesh.identification.estimation.analysis import Analysis, Family
+from gearmesh.identification.estimation.inference import effective_size
 from gearmesh.identification.factors import KINDS
-from gearmesh.identification.inference import effective_size
-from gearmesh.identification.store import Samples
+from gearmesh.identification.sampling.store import Samples
 from gearmesh.reproduction.claims import REPRODUCED
 
 SURVEY, NATURAL, TRUTH = "survey", "natural", "truth"

@@ -4,10 +4,10 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from gearmesh.identification.boxes import Box, box_of
+from gearmesh.identification.estimation.wording import closeness, statements, weight_of_claims
+from gearmesh.identification.sampling.boxes import Box, box_of
+from gearmesh.identification.sampling.store import Samples
 from gearmesh.identification.settings import Design
-from gearmesh.identification.store import Samples
-from gearmesh.identification.wording import closeness, statements, weight_of_claims
 from gearmesh.reproduction.claims import Claim
 
 BEST = 64

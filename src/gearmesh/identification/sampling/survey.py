@@ -7,9 +7,9 @@ import numpy as np
 import xarray as xr
 
 from gearmesh.data import casefile
-from gearmesh.identification import store
-from gearmesh.identification.curves import SampledCurve, scan_all
-from gearmesh.identification.design import Sample, pair_of, samples
+from gearmesh.identification.sampling import store
+from gearmesh.identification.sampling.curves import SampledCurve, scan_all
+from gearmesh.identification.sampling.design import Sample, pair_of, samples
 from gearmesh.identification.settings import Settings
 from gearmesh.reproduction.claims.checking import MEASURES
 from gearmesh.reproduction.claims.evidence import Evidence, NotInStudy, NotLocated

@@ -15,8 +15,8 @@ from pathlib import Path
 import numpy as np
 import xarray as xr
 
-from gearmesh.identification import store
 from gearmesh.identification.factors import FACTORS, KINDS
+from gearmesh.identification.sampling import store
 from gearmesh.identification.settings import Design
 
 MARGIN = 0.05

@@ -6,12 +6,12 @@ from functools import cached_property
 
 import numpy as np
 
-from gearmesh.identification import inference
-from gearmesh.identification.boxes import Box, prior_weights
-from gearmesh.identification.inference import ENOUGH, Fit, effective_size
+from gearmesh.identification.estimation import inference
+from gearmesh.identification.estimation.inference import ENOUGH, Fit, effective_size
+from gearmesh.identification.estimation.wording import Statement, statements, weight_of_claims
+from gearmesh.identification.sampling.boxes import Box, prior_weights
+from gearmesh.identification.sampling.store import Samples
 from gearmesh.identification.settings import Settings
-from gearmesh.identification.store import Samples
-from gearmesh.identification.wording import Statement, statements, weight_of_claims
 from gearmesh.reproduction.claims import Claim
 
 

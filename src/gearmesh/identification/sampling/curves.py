@@ -12,7 +12,7 @@ from dataclasses import replace
 import numpy as np
 
 from gearmesh.dynamics.response_curves import ResponseCurve
-from gearmesh.identification.design import Sample, pair_of
+from gearmesh.identification.sampling.design import Sample, pair_of
 from gearmesh.model.motion import state_at
 from gearmesh.model.problem import Problem, State
 from gearmesh.model.variants import variant

@@ -10,7 +10,7 @@ from gearmesh.identification.settings import Wording
 from gearmesh.reproduction.claims import Bound, Claim
 
 Columns = Mapping[str, np.ndarray]
-"""Column -> values of all samples, shape (n_samples,); see `gearmesh.identification.survey`."""
+"""Column -> values of all samples, shape (n_samples,); see the package `sampling`."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -10,8 +10,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from gearmesh.identification.inference import Fit, fit, joint_level, region
-from gearmesh.identification.wording import Columns, Statement, columns_of
+from gearmesh.identification.estimation.inference import Fit, fit, joint_level, region
+from gearmesh.identification.estimation.wording import Columns, Statement, columns_of
 
 
 def paper(truth: Mapping[str, float], stated: Sequence[Statement]) -> dict[str, Statement | bool]:

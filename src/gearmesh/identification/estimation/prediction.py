@@ -5,8 +5,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from gearmesh.identification.inference import Fit, fit, predictive, quantile
-from gearmesh.identification.wording import Columns, Statement, columns_of
+from gearmesh.identification.estimation.inference import Fit, fit, predictive, quantile
+from gearmesh.identification.estimation.wording import Columns, Statement, columns_of
 
 COVERED = 0.9
 """Probability of the intervals in which held-out numbers should lie."""
