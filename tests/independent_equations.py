@@ -254,17 +254,19 @@ def elastic(problem: Problem, t: float, y: float, mode: Mode, x) -> float:
     if deviates(problem) and mode.regime == NORMAL_MESH:
         shares = stiffness_of_pairs(problem, t, mode.inside)
         return sum(
-            shares[p] * _restoring(problem, y - distance(problem, t, p)) for p in mode.pressing
+            shares[p] * _restoring(problem, t, y - distance(problem, t, p)) for p in mode.pressing
         )
     d = y if mode.regime == NORMAL_MESH else y + backlash(problem, t, x)
-    return stiffness(problem, t, mode.inside) * _restoring(problem, d)
+    return stiffness(problem, t, mode.inside) * _restoring(problem, t, d)
 
 
-def _restoring(problem: Problem, d: float) -> float:
-    """Return |d|^p + c_2 d^2 + c_3 |d|^3 with the sign of d."""
+def _restoring(problem: Problem, t: float, d: float) -> float:
+    """Return |d|^p + c_2 d^2 + c_3 |d|^3 with the sign of d, where c_2 and c_3 may vary."""
     terms, size = problem.terms, abs(d)
-    force = size**terms.restoring_power + terms.restoring_2 * size**2 + terms.restoring_3 * size**3
-    return copysign(force, d)
+    orders = [(n, *both) for n, both in enumerate(terms.restoring_fourier, start=1)]
+    varies = 1.0 + series_of(orders, turned(problem, t))
+    stiffening = terms.restoring_2 * size**2 + terms.restoring_3 * size**3
+    return copysign(size**terms.restoring_power + varies * stiffening, d)
 
 
 def contact_force(problem: Problem, t: float, x, mode: Mode) -> float:

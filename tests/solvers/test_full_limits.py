@@ -166,6 +166,19 @@ def test_a_stiffening_mesh_comes_to_rest_where_the_forces_balance(powers):
     assert response.y_min == pytest.approx(rest, abs=1e-9)
 
 
+def test_a_weak_stiffening_that_varies_is_a_force_of_its_frequency():
+    """At y = 1 it has the amplitude c_2, and the motion is linear to the first order in it."""
+    weak = 1e-5
+    case = oscillator(revolutions=40)
+    moved = with_terms(case, restoring_2=weak, restoring_fourier=((0.0, 0.0), (1.0, 0.0)))
+    response = integrate(moved, 1e-12, estimate_errors=False)
+    order = 2.0 * case.nu
+    amplitude = weak / abs(1.0 - order**2 + 1j * case.material[0] * order)
+    assert response.y_max - response.y_min == pytest.approx(2.0 * amplitude, rel=1e-3)
+    still = with_terms(case, restoring_fourier=((1.0, 0.0),))
+    np.testing.assert_array_equal(strobes(still), strobes(case))
+
+
 def test_a_contact_that_does_not_pull():
     case = problem(0.85, "b-both")
     pulling, pressing = (

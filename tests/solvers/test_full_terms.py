@@ -109,6 +109,9 @@ CASES = {
     "stiffening": pair(0.75, "c-both", STIFFENING),
     "stiffening, back flanks, two wheels": unequal(0.9, "b-lubricant", STIFFENING, backlash=0.3),
     "stiffening, Fourier": unequal(0.7, "b-both", {**STIFFENING, **WAVES}),
+    "stiffening that varies, contact loss": pair(
+        0.85, "c-lubricant", {**STIFFENING, "restoring_fourier": ((0.5, 0.2), (0.0, -0.3))}
+    ),
     "non-adhesive": pair(0.85, "b-both", {"non_adhesive": True}),
     "non-adhesive, back flanks": pair(0.9, "b-both", {"non_adhesive": True}, backlash=0.4),
     "non-adhesive, two wheels, strong damping": unequal(

@@ -282,7 +282,7 @@ def test_a_study_of_ones_own_inherits_no_false_statement(root, tmp_path, pair):
     assert study.pair.stiffness_mean == pytest.approx(5.2e5 * (0.65 + 0.35 * 0.62))
 
 
-@pytest.mark.parametrize("name", ["profile_deviation", "stiffness_fourier"])
+@pytest.mark.parametrize("name", ["profile_deviation", "stiffness_fourier", "restoring_fourier"])
 def test_harmonics_are_limited_in_one_line(pair, name):
     harmonic = ["1 um", "0 um"] if name == "profile_deviation" else [0.001, 0.0]
     assert len(getattr(pair.replace(**{name: [harmonic] * 100}), name)) == 100

@@ -161,6 +161,7 @@ def test_two_wheels_and_every_term_reach_the_problem(pair):
         tooth_factors=[{"wheel": 2, "tooth": 3, "factor": 0.5}],
         backlash_harmonics=[{"wheel": 3, "shaft": 1, "cos": "2 um"}],
         restoring_3=0.1,
+        restoring_fourier=[[0.2, 0.0], [0.0, 0.1]],
         non_adhesive=True,
         damping_follows_stiffness="sqrt",
         stiffness_fourier=[[0.1, 0.2]],
@@ -179,6 +180,7 @@ def test_two_wheels_and_every_term_reach_the_problem(pair):
     assert terms.tooth_factors == ((2, 3, 0.5),)
     assert terms.backlash_harmonics[0].cosine == pytest.approx(2e-3 / pair.static_deflection)
     assert terms.backlash_harmonics[0].order == 1.0 / 20
+    assert terms.restoring_fourier == ((0.2, 0.0), (0.0, 0.1))
     assert (terms.restoring_3, terms.non_adhesive, terms.damping_power) == (0.1, True, 0.5)
     # Force of a damper of the rotation on the base circle, in N s/mm, over C_s / Omega_s.
     damper = 1000.0 / stated.base_radii[0] ** 2

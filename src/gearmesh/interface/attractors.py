@@ -40,8 +40,7 @@ def attractors(
     Parameters
     ----------
     pair : Pair
-        The gear pair: two equal wheels, without eccentricity, profile deviation, Fourier stiffness
-        and other terms that only the general solver knows.
+        The gear pair. If wheels are eccentric, a drive holds the speed, as for `find_orbit`.
     variant : str or Variant
         Which damping terms act where.
     nu : float or str
@@ -50,7 +49,8 @@ def attractors(
         Initial conditions (y, dy/dτ_s), each with its unit or as a number of static deflections.
         By default the pair's own and a grid of 36.
     revolutions : int
-        Revolutions after which a motion that has not settled is classified as it is.
+        Revolutions of wheel 3 after which a motion that has not settled is classified as it is.
+        They are rounded up until the excitation repeats.
 
     Returns
     -------
@@ -114,7 +114,8 @@ def basins(
         As for `attractors`.
     y, v : array_like
         Initial y and dy/dτ_s: one value or several, each with its unit or as a number of static
-        deflections. The wheel bodies are in static equilibrium.
+        deflections. The wheel bodies are in static equilibrium, and both wheels share the rotation
+        that y takes, as for `simulate`.
     phase : array_like, optional
         Initial mesh phases, 0 to 1; by default that of the pair.
     revolutions : int

@@ -29,7 +29,10 @@ def lyapunov_spectrum(
     periods: int = 1000,
     transient: int = 1000,
 ) -> xr.Dataset:
-    """Return the Lyapunov exponents of a motion, from the exact Jacobians of its mesh periods.
+    """Return the Lyapunov exponents of a motion, from the Jacobians of its mesh periods.
+
+    They are exact in the reduced system. Differences of sixth order give those of other pairs; the
+    error of the exponents is then about 1e-9 Ω_s.
 
     Parameters
     ----------
@@ -40,7 +43,8 @@ def lyapunov_spectrum(
     start : tuple, optional
         Initial condition (y, dy/dτ_s), as for `simulate`; by default that of the pair.
     periods : int
-        Mesh periods over which growth is measured, at least 8.
+        Mesh periods over which growth is measured, at least 8. Both numbers are rounded up until
+        the excitation repeats.
     transient : int
         Mesh periods before.
 

@@ -30,8 +30,8 @@ def elastic_force(
     c: Number,
     regime: Number,
     backlash: Number,
-    quadratic: float = 0.0,
-    cubic: float = 0.0,
+    quadratic: Number = 0.0,
+    cubic: Number = 0.0,
     exponent: float = 1.0,
 ) -> Number:
     """Return the elastic force of eq. (1), in the unit of `c` times `y`.

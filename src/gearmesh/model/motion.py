@@ -203,6 +203,17 @@ def _friction(
     return force, moment_3, moment_2
 
 
+def _stiffening(problem: Problem, time: Number) -> tuple[Number, Number]:
+    """Return c_2 and c_3 of the elastic force."""
+    terms = problem.terms
+    coefficients = terms.restoring_2, terms.restoring_3
+    if not terms.restoring_fourier:
+        return coefficients
+    harmonics = [Harmonic(n, *both) for n, both in enumerate(terms.restoring_fourier, start=1)]
+    share = 1.0 + harmonic_sum(harmonics, problem.nu * time)
+    return coefficients[0] * share, coefficients[1] * share
+
+
 def forces(
     problem: Problem, time: Number, q: Six, v: Six, y: Number, rate: Number, mode: Mode
 ) -> Forces:
@@ -210,7 +221,7 @@ def forces(
     terms = problem.terms
     phase = mesh_phase(problem, time)
     c = mesh_stiffness(problem, phase, mode.segment)
-    law = terms.restoring_2, terms.restoring_3, terms.restoring_power
+    law = *_stiffening(problem, time), terms.restoring_power
     if terms.pairs_touch_singly and mode.regime == NORMAL_MESH:
         stiffnesses = pair_stiffnesses(problem, phase, mode.segment)
         starts = distances(problem, phase, mode.segment)

@@ -81,6 +81,9 @@ class GeneralTerms:
         Factors of single teeth. A pair of teeth takes the product of its two.
     restoring_2, restoring_3 : float
         The elastic force is C (d + c_2 d abs(d) + c_3 d^3) at the depth d.
+    restoring_fourier : tuple of (float, float)
+        Amplitudes (cosine, sine) of harmonics 1, 2, ... of the mesh frequency, by which c_2 and c_3
+        vary relative to their means.
     restoring_power : float
         The power p of Hertz: d abs(d)^(p - 1) replaces the first d in the elastic force.
     non_adhesive : bool
@@ -109,6 +112,7 @@ class GeneralTerms:
     tooth_factors: tuple[ToothFactor, ...] = ()
     restoring_2: float = 0.0
     restoring_3: float = 0.0
+    restoring_fourier: tuple[tuple[float, float], ...] = ()
     restoring_power: float = 1.0
     non_adhesive: bool = False
     damping_power: float = 0.0

@@ -82,6 +82,7 @@ def _fastest_rate(problem: Problem, nu: float) -> float:
         problem.stiffness_harmonics,
         len(problem.deviation),
         len(terms.stiffness_fourier),
+        len(terms.restoring_fourier),
     ]
     for harmonics in (
         terms.torque_harmonics_3,

@@ -160,6 +160,12 @@ class Parameters(Section):
     restoring_3: float = quantity(
         "1", "c_3", "cubic part of the elastic force, in 1/y_st²", -10.0, 10.0, default=0.0
     )
+    restoring_fourier: tuple[tuple[float, float], ...] = quantity(
+        *("1", "I_n", "(cos, sin) by which c_2 and c_3 vary, harmonics 1, 2, … of the mesh"),
+        *(-10.0, 10.0),
+        default=(),
+        max_length=MOST_HARMONICS,
+    )
     restoring_power: float = quantity(
         *("1", "p", "power of the depth in the elastic force: for Hertz 10/9 or 3/2", 1.0, 2.0),
         default=1.0,

@@ -125,6 +125,7 @@ def _general_terms(pair: "Pair") -> GeneralTerms:
         ),
         restoring_2=pair.restoring_2,
         restoring_3=pair.restoring_3,
+        restoring_fourier=pair.restoring_fourier,
         restoring_power=pair.restoring_power,
         non_adhesive=pair.non_adhesive,
         damping_power={"none": 0.0, "sqrt": 0.5, "linear": 1.0}[pair.damping_follows_stiffness],

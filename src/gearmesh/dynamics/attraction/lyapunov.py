@@ -1,4 +1,4 @@
-"""Lyapunov exponents of a motion, from the exact Jacobian of each mesh period."""
+"""Lyapunov exponents of a motion, from the Jacobian of each mesh period."""
 
 import math
 from typing import NamedTuple

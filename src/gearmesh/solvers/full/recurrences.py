@@ -7,7 +7,7 @@ a run in this process first needs the function.
 """
 
 import ctypes
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable
 from dataclasses import replace
 from functools import cache, lru_cache
 from itertools import count
@@ -161,7 +161,7 @@ def _numbers(operation: Operation) -> tuple[float, ...]:
     return operands[1] if code == ENTRY else ()
 
 
-def _emit(function: ir.Function, first: Sequence[Shape], second: Sequence[Shape]) -> None:
+def _emit(function: ir.Function, first: tuple[Shape, ...], second: tuple[Shape, ...]) -> None:
     """Write the instructions of a function; see `_compile`."""
     arguments = function.args
     start, stop = arguments[3:]
@@ -191,7 +191,11 @@ def _emit(function: ir.Function, first: Sequence[Shape], second: Sequence[Shape]
     done.add_incoming(zero, after_zeroth)
     done.add_incoming(k, after_further)
     if second:
-        Further(builder, arguments, builder.add(done, ir.Constant(INT64, 2))).emit(second)
+        # As a call, not in line: many functions share it, and this halves what LLVM compiles.
+        address = ir.Constant(INT64, _compile((second, ())))
+        order = builder.add(done, ir.Constant(INT64, 2))
+        moves = builder.inttoptr(address, _SIGNATURE.as_pointer())
+        builder.call(moves, [*arguments[:3], order, builder.add(order, one)])
     following = builder.add(done, one)
     k.add_incoming(following, builder.block)
     builder.cbranch(builder.icmp_signed("<", following, stop), further, end)
@@ -238,7 +242,7 @@ def _compiles_itself(branch: np.ndarray, part: int, function: _Function) -> int:
 
     def call(*arguments: Any) -> None:
         try:
-            branch[part] = _compiled.get(function) or _compile(function)
+            branch[part] = _compile(function)
             _CALL(int(branch[part]))(*arguments)
         except BaseException as error:
             _failures.append(error)
@@ -256,12 +260,14 @@ def raise_failures() -> None:
 
 
 def _compile(function: _Function) -> int:
-    """Compile a function and return its address.
+    """Return the address of a function, which is compiled once in a process.
 
     Its arguments are the table of series, its numbers, the sign of y', the first order, and the
     order before which it stops. The operations that run two orders ahead are those of y, since the
     accelerations of order k give the coordinates of order k + 2. Their numbers come first.
     """
+    if function in _compiled:
+        return _compiled[function]
     module = ir.Module()
     module.triple = binding.get_default_triple()
     name = next(_names)
