@@ -70,9 +70,15 @@ class Course:
 
 
 def integrate(
-    problem: Problem, periods: int | None = None, rtol: float = 1e-12, steps_per_period: int = 40
+    problem: Problem,
+    periods: int | None = None,
+    rtol: float = 1e-12,
+    steps_per_period: int = 40,
+    share: float = 1.0,
 ) -> Course:
     """Integrate by DOP853 from event to event, over all mesh periods or the first `periods`.
+
+    With `periods` = 1 the motion may end within the mesh period, after a `share` of it.
 
     The direction in which each event function passes 0 is part of the event, so the place where
     the last one was found is not found again.
@@ -81,7 +87,7 @@ def integrate(
     strobes = [run.relative_motion()]
     if periods is None:
         periods = problem.revolutions * bodies(problem)[0].teeth
-    stops = _stops(problem)
+    stops = [*(place for place in _stops(problem) if place < share), share]
     for n in range(periods):
         for low, high in itertools.pairwise(stops):
             run.mode = replace(run.mode, inside=n + 0.5 * (low + high) + problem.initial_phase)

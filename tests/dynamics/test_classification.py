@@ -50,7 +50,7 @@ def test_every_kind_is_told(found):
     ("name", "periods"), [("one period", 1), ("contact loss", 1), ("two periods", 2)]
 )
 def test_a_run_settles_on_an_orbit_when_a_simulation_does(found, name, periods):
-    case, (attractor, settled) = CASES[name], found[name]
+    case, (attractor, settled, _) = CASES[name], found[name]
     assert attractor.orbit.periods == periods
     orbit = find_orbit(case, periods, attractor.orbit.state)
     [run] = simulate([replace(case, revolutions=20)], estimate_errors=False)
@@ -68,7 +68,7 @@ def test_a_run_settles_on_an_orbit_when_a_simulation_does(found, name, periods):
 
 
 def test_motion_that_is_neutral_was_not_before_it_settled(found):
-    case, (attractor, settled) = CASES["in contact at last"], found["in contact at last"]
+    case, (attractor, settled, _) = CASES["in contact at last"], found["in contact at last"]
     envelope, start = envelope_of(case), initial_coordinates(case)
     margins = [
         envelope.margins(passage(case, start, n).end[None])[0] for n in (settled - 1, settled)
@@ -83,7 +83,7 @@ def test_motion_that_is_neutral_was_not_before_it_settled(found):
 
 
 def test_motion_that_still_moves_has_the_time_constant_of_the_bearings(found):
-    attractor, settled = found["for ever shallower"]
+    attractor, settled, _ = found["for ever shallower"]
     assert settled is None
     slowest = abs(find_orbit(CASES["for ever shallower"]).multipliers[0])
     assert attractor.time_constant == pytest.approx(-1.0 / np.log(slowest), rel=1e-6)

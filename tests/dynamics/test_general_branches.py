@@ -3,8 +3,10 @@
 from dataclasses import replace
 from pathlib import Path
 
+import independent
 import numpy as np
 import pytest
+from independent_equations import backlash, relative_motion
 from problems import problem
 
 import gearmesh as gm
@@ -12,8 +14,12 @@ from gearmesh.dynamics import branches, general_search, orbits
 from gearmesh.dynamics.general_orbits import shot_from
 from gearmesh.dynamics.special_curves import follow_special
 from gearmesh.errors import NoOrbit
+from gearmesh.model.functions import Harmonic
+from gearmesh.model.problem import GeneralTerms, State
+from gearmesh.solvers.reduced.variational import VELOCITY
 
 LIMITS = (0.3845, 0.3862)
+RIPPLE = Harmonic(1.0, 0.2, 0.1)
 EXAMPLES = Path(__file__).parents[2] / "config" / "examples"
 
 
@@ -26,7 +32,7 @@ def in_general(orbit):
 
 def special(orbit, limits):
     found = branches.follow(orbit, "nu", limits, longest_step=0.1)
-    return [(one.kind, one.nu) for one in found.special if one.kind != "switching"]
+    return [(one.kind, one.nu) for one in found.special]
 
 
 def test_folds_and_grazings_and_torus_points_are_the_exact_ones():
@@ -50,6 +56,68 @@ def test_flips_are_the_exact_ones():
     exact, found = (special(one, (0.67, 0.69)) for one in (orbit, in_general(orbit)))
     assert [kind for kind, _ in exact] == [kind for kind, _ in found] == ["flip", "flip"]
     np.testing.assert_allclose([nu for _, nu in found], [nu for _, nu in exact], atol=1e-10)
+
+
+@pytest.mark.parametrize("name", ["c-material", "c-lubricant"])
+def test_switching_points_are_the_exact_ones(name):
+    orbit = orbits.find_orbit(problem(0.66, name))
+    exact, found = (special(one, (0.64, 0.67)) for one in (orbit, in_general(orbit)))
+    assert [kind for kind, _ in exact] == [kind for kind, _ in found] == ["switching"]
+    np.testing.assert_allclose([nu for _, nu in found], [nu for _, nu in exact], atol=1e-10)
+
+
+def test_switching_points_of_two_wheels_have_a_turning_point_at_a_jump_of_the_stiffness():
+    """Wheels of unequal bodies turn y back at a switch of C(t): SciPy stops there, and y rests."""
+    case = problem(0.66, "c-material", friction_coefficient=0.0)
+    wheel_3, wheel_2 = case.both_wheels
+    unequal = replace(case, wheels=(wheel_3, replace(wheel_2, body_mass=2.0 * wheel_2.body_mass)))
+    found = branches.follow(general_search.find_orbit(unequal), "nu", (0.6, 0.72), longest_step=0.1)
+    (point,) = found.special
+    assert point.kind == "switching"
+    half = 0.5 * (case.contact_ratio - 1.0)
+    rates = [velocity_at(point.orbit, share) for share in (half, 1.0 - half)]
+    slopes = np.diff([min(np.abs(one.stiffness_jumps[:, VELOCITY])) for one in found.orbits])
+    assert min(np.abs(rates)) < 1e-9
+    assert np.abs(slopes / np.diff(found.values)).min() > 0.5  # so nu is right to 1e-8
+
+
+def velocity_at(orbit, share):
+    run = replace(orbit.problem, initial_state=orbit.initial_state)
+    end = independent.integrate(run, 1, share=share)
+    return relative_motion(run, run.period * share, end.state)[1]
+
+
+VARYING = {
+    "harmonics": {"backlash": 0.91, "terms": GeneralTerms(backlash_harmonics=(RIPPLE,))},
+    "centres": {"backlash": 0.44, "terms": GeneralTerms(backlash_follows_centres=True)},
+}
+
+
+@pytest.mark.parametrize("how", VARYING)
+def test_the_back_flanks_graze_where_the_gap_closes_and_opens_again(how):
+    """SciPy comes to y + s(t) = 0 at the time of the extremum, with a rate of 0."""
+    laws = {"material": (0.05, 0.05, 0.0), "lubricant": (0.05, 0.05, 0.0)}
+    whole = problem(0.955, "c-lubricant", friction_coefficient=0.0, **laws)
+    near = State(*orbits.find_orbit(whole).state.tolist())
+    begun = general_search.find_orbit(replace(whole, initial_state=near, **VARYING[how]))
+    found = branches.follow(begun, "nu", (0.945, 0.958), longest_step=0.1)
+    (point,) = (one for one in found.special if one.kind == "grazing_back")
+    orbit = point.orbit
+    extrema = orbit.gap_extrema
+    share = extrema[np.argmin(np.abs(extrema[:, 1])), 0] / orbit.problem.period
+    run = replace(orbit.problem, initial_state=orbit.initial_state)
+    before, at, after = (gap_at(run, share + away) for away in (-1e-4, 0.0, 1e-4))
+    assert abs(at) < 1e-9
+    assert abs(after - before) < 1e-9 < before + after - 2.0 * at
+    heights = np.array([one.gap_extrema[:, 1].min() for one in found.orbits])
+    assert heights[0] < 0.0 < heights[-1]
+    assert np.abs(np.diff(heights) / np.diff(found.values)).min() > 1.0  # so nu is right to 1e-8
+
+
+def gap_at(run, share):
+    end = independent.integrate(run, 1, share=share)
+    time = run.period * share
+    return relative_motion(run, time, end.state)[0] + backlash(run, time, end.state)
 
 
 def test_a_sweep_jumps_at_the_fold_of_the_branch():

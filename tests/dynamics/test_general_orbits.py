@@ -9,6 +9,7 @@ from problems import problem
 import gearmesh as gm
 from gearmesh.dynamics import general_search, orbits
 from gearmesh.dynamics.charts import state_at_place as state_of
+from gearmesh.dynamics.general_orbits import shot_from
 from gearmesh.errors import NoOrbit
 from gearmesh.model.functions import Harmonic
 from gearmesh.model.problem import GeneralTerms
@@ -110,3 +111,16 @@ def test_the_back_flanks_are_where_the_backlash_is_at_the_time():
     found = general_search.find_orbit(problem(0.9, "b-both", terms=terms, backlash=1.4))
     assert found.y_min > -1.4
     assert found.signature == (1, 0, -1, 0)
+
+
+def test_newtons_method_comes_back_from_a_trial_that_runs_away():
+    """Where the flanks soften, a motion may leave the well: the first full step does."""
+    case = problem(0.9, "b-material", terms=GeneralTerms(restoring_3=-0.03))
+    begun = shot_from(case, np.array([2.1, 0.0, 0.7, 0.0]), 1, 0.0)
+    step = np.linalg.solve(begun.gradient, -begun.defect)
+    with pytest.raises(NoOrbit, match="diverged"):
+        begun.shot(case, begun.state + step, 1)
+    found = general_search.correct(begun)
+    settled = general_search.find_orbit(case)
+    assert found.y_max == pytest.approx(settled.y_max, abs=1e-10)
+    assert found.stable

@@ -11,16 +11,24 @@ from gearmesh.dynamics.attraction.classification import classify
 from gearmesh.dynamics.orbits import correct
 from gearmesh.model.variants import variant
 from gearmesh.reproduction.mechanisms import tables
-from gearmesh.reproduction.mechanisms.attractors import all_branches, further, holds
+from gearmesh.reproduction.mechanisms.attractors import (
+    all_branches,
+    carried,
+    further,
+    holds,
+    reached,
+)
+from gearmesh.reproduction.mechanisms.orbits import WITHOUT_SUPPORTS
 from gearmesh.solvers.simulation import simulate
 
 NAME = "c-lubricant"
 NUS = np.round(np.linspace(0.7, 0.765, 27), 4)
+LIMITS = float(NUS[0]), float(NUS[-1])
 
 
 @pytest.fixture(scope="module")
 def found(pair):
-    return all_branches(pair, NAME, NUS)
+    return all_branches(pair, NAME, LIMITS, reached(pair, NAME, NUS))
 
 
 def test_isolas_of_longer_periods_are_found_and_closed_between_their_folds(found):
@@ -75,8 +83,15 @@ def test_every_periodic_attractor_of_the_cases_is_on_a_branch(pair, found):
 
 
 def test_an_orbit_on_a_branch_begins_no_other(found):
-    limits = float(NUS[0]), float(NUS[-1])
     isola = next(branch for branch in found if branch.orbit.periods == 3)
     along = [isola.at(i) for i in range(0, len(isola.found.values), 7)]
     assert all(holds(isola, orbit) for orbit in along)
-    assert not list(further(found, along, limits))
+    assert not list(further(found, along, LIMITS))
+
+
+def test_the_branches_of_a_similar_pair_are_carried_over(pair, found):
+    simpler = pair.replace(**WITHOUT_SUPPORTS)
+    isola = next(branch for branch in found if branch.orbit.periods == 3)
+    (again,) = further([], carried(simpler, [isola]), LIMITS)
+    assert again.orbit.periods == 3
+    assert again.found.values.min() == pytest.approx(isola.found.values.min(), abs=2e-3)

@@ -144,7 +144,7 @@ def test_datasets_hold_what_the_case_files_hold(smoke):
 
 
 def times(project: Project) -> dict[Path, int]:
-    return {path: path.stat().st_mtime_ns for path in project.study.rglob("*.*")}
+    return {path: path.stat().st_mtime_ns for path in project.study.rglob("[!.]*.*")}
 
 
 def test_a_rerun_has_nothing_to_do(smoke):

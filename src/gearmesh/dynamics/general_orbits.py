@@ -22,20 +22,17 @@ from gearmesh.dynamics.charts import (
     state_at_place,
     with_moments,
 )
+from gearmesh.dynamics.differences import LARGEST_STEP, slope
+from gearmesh.dynamics.general_events import gap_extrema, stiffness_jumps
 from gearmesh.dynamics.orbits import TimeCourse, sorted_multipliers
 from gearmesh.errors import NoOrbit
 from gearmesh.model.contact import regime_of
 from gearmesh.model.problem import Problem, State
-from gearmesh.solvers.full.runs import Propagation, integrate
-from gearmesh.solvers.reduced.variational import EVENT_SIZE
+from gearmesh.solvers.full.measures import Step
+from gearmesh.solvers.full.runs import Propagation, integrate, steps_of
 from gearmesh.solvers.response import Response
 
 _TOLERANCE = 1e-14
-_DIFFERENCE = 1e-3
-_SHARES = (1.0, 0.1, 0.01, 0.001)
-_SMOOTH = 1e-8  # difference between orders without a kink
-_SIXTH = np.array([-1.0, 9.0, -45.0, 45.0, -9.0, 1.0]) / 60.0
-_FOURTH = np.array([0.0, 1.0, -8.0, 8.0, -1.0, 0.0]) / 12.0
 SAME = 1e-8
 """Distance between states that count as the same, and between numbers that count as whole."""
 
@@ -136,10 +133,25 @@ class GeneralOrbit:
         found = self.response
         return np.column_stack([found.extremum_time, found.extremum_y, found.extremum_kind])
 
-    @property
+    @cached_property
+    def gap_extrema(self) -> np.ndarray:
+        """Extrema of y + s(t) over the orbit's own period, shape (n, 3) as of `extrema`."""
+        if self.problem.terms.backlash_varies:
+            return gap_extrema(self._steps)
+        return self.extrema + np.array([0.0, self.problem.backlash, 0.0])
+
+    @cached_property
     def stiffness_jumps(self) -> np.ndarray:
-        """Events at which C(t) jumps: none, because the general solver does not list them."""
-        return np.empty((0, EVENT_SIZE))
+        """The events at which C(t) jumps."""
+        return stiffness_jumps(self._run, self._steps)
+
+    @property
+    def _run(self) -> Problem:
+        return _run(self.held, self.initial_state, self.periods)
+
+    @cached_property
+    def _steps(self) -> list[Step]:
+        return list(steps_of(self._run, _TOLERANCE))
 
     @property
     def defect(self) -> np.ndarray:
@@ -154,18 +166,18 @@ class GeneralOrbit:
     @cached_property
     def jacobian(self) -> np.ndarray:
         """Jacobian of the coordinates and rates over the period, shape (2 n, 2 n)."""
-        return self._jacobian(_DIFFERENCE)
+        return self._jacobian(LARGEST_STEP)
 
     @cached_property
     def gradient(self) -> np.ndarray:
         """Jacobian of the defect in the state, shape (k, k)."""
         if self.chart.rotation == HELD:
             # Newton's method and tangents need the effect of the moments to a few digits only.
-            away = _DIFFERENCE * np.eye(self.state.size)[0]
+            away = LARGEST_STEP * np.eye(self.state.size)[0]
             ahead, behind = (
                 self.shot(self.problem, self.state + one, self.periods).end for one in (away, -away)
             )
-            pushed = (ahead - behind) / (2.0 * _DIFFERENCE)
+            pushed = (ahead - behind) / (2.0 * LARGEST_STEP)
             others = self.jacobian[:, 1:] - np.eye(self.end.size)[:, 1:]
             return np.column_stack([pushed, others])
         return self.monodromy - np.eye(self.state.size)
@@ -188,7 +200,7 @@ class GeneralOrbit:
     @property
     def multiplier_error(self) -> float:
         """Change of the multipliers with differences of a quarter of the largest step."""
-        finer = self.chart.monodromy(self._jacobian(0.25 * _DIFFERENCE))
+        finer = self.chart.monodromy(self._jacobian(0.25 * LARGEST_STEP))
         others = np.linalg.eigvals(finer)
         return max(float(np.abs(others - one).min()) for one in self.multipliers)
 
@@ -217,7 +229,7 @@ class GeneralOrbit:
         found, place, motions = [], self.start, ends(self.held, self.periods)
         for n in range(self.periods):
             end = partial(motions, first=n, last=n + 1)
-            found.append(np.array([_slope(end, place, one) for one in np.eye(place.size)]).T)
+            found.append(np.array([slope(end, place, one) for one in np.eye(place.size)]).T)
             place = end(place)
         kept = self.chart.kept
         found[0] = found[0][:, kept]
@@ -226,7 +238,7 @@ class GeneralOrbit:
 
     def _jacobian(self, step: float) -> np.ndarray:
         end = ends(self.held, self.periods)
-        return np.array([_slope(end, self.start, one, step) for one in np.eye(self.end.size)]).T
+        return np.array([slope(end, self.start, one, step) for one in np.eye(self.end.size)]).T
 
     @property
     def undamped(self) -> bool:
@@ -320,29 +332,6 @@ def common_period(problem: Problem) -> int:
     )
 
 
-def _slope(
-    function: Callable[[np.ndarray], np.ndarray],
-    place: np.ndarray,
-    along: np.ndarray,
-    largest: float = _DIFFERENCE,
-) -> np.ndarray:
-    """Return the derivative of a function along a direction, by differences of sixth order.
-
-    Differences of fourth order serve as a check: they deviate if the function has a kink nearby.
-    The step is then reduced, starting from `largest`.
-    """
-    best = np.inf
-    for step in largest * np.array(_SHARES):
-        sides = [function(place + n * step * along) for n in (-3, -2, -1, 1, 2, 3)]
-        sixth, fourth = (np.dot(weights, sides) / step for weights in (_SIXTH, _FOURTH))
-        error = float(np.abs(sixth - fourth).max())
-        if error < best:
-            found, best = sixth, error
-        if error < _SMOOTH:
-            break
-    return np.asarray(found)
-
-
 def shot_from(problem: Problem, state: np.ndarray, periods: int, angle: float) -> GeneralOrbit:
     """Return a motion from the unknowns of an orbit."""
     bare = replace(problem, initial_state=None)
@@ -374,14 +363,21 @@ def moved_to_phase(problem: Problem, place: np.ndarray, phase: float) -> np.ndar
 
 def run_of(problem: Problem, begun: State, periods: int, samples_per_period: int) -> Response:
     """Integrate whole mesh periods; they are kept if samples are wanted."""
+    run = _run(problem, begun, periods)
+    if samples_per_period:
+        run = replace(run, kept_revolutions=periods)
+    return integrate(run, _TOLERANCE, samples_per_period, estimate_errors=False)
+
+
+def _run(problem: Problem, begun: State, periods: int) -> Problem:
+    """Return the problem of a run over whole mesh periods, none of which is kept."""
     # A run takes whole revolutions: with a "revolution" of one period it takes any number of
     # mesh periods. The wheels keep their teeth.
-    run = replace(
+    return replace(
         problem,
         wheels=problem.both_wheels,
         teeth=1,
         revolutions=periods,
-        kept_revolutions=periods if samples_per_period else 0,
+        kept_revolutions=0,
         initial_state=begun,
     )
-    return integrate(run, _TOLERANCE, samples_per_period, estimate_errors=False)

@@ -77,7 +77,11 @@ def correct(orbit: GeneralOrbit) -> GeneralOrbit:
         share = 1.0
         shortest = 1.0 if orbit.residual < LARGEST_RESIDUAL else _SHORTEST_CORRECTION
         while share >= shortest:
-            candidate = orbit.shot(problem, orbit.state + share * correction, periods)
+            try:
+                candidate = orbit.shot(problem, orbit.state + share * correction, periods)
+            except NoOrbit:  # the motion runs away; it may not from a state nearer by
+                share *= 0.5
+                continue
             if candidate.residual < (1.0 - 0.1 * share) * orbit.residual:
                 break
             share *= 0.5

@@ -216,6 +216,11 @@ class Orbit:
         return np.column_stack([turns[:, TIME], turns[:, HEIGHT], -np.sign(turns[:, AFTER])])
 
     @cached_property
+    def gap_extrema(self) -> np.ndarray:
+        """Extrema of y + s over the orbit's own period, shape (n, 3) as of `extrema`."""
+        return self.extrema + np.array([0.0, self.problem.backlash, 0.0])
+
+    @cached_property
     def stiffness_jumps(self) -> np.ndarray:
         """The events at which C(t) jumps."""
         events = self.passage.events

@@ -72,6 +72,10 @@ class Shot(Protocol):
         """Extrema of y, shape (n, 3): time, y, kind (1 or -1)."""
 
     @property
+    def gap_extrema(self) -> np.ndarray:
+        """Extrema of y + s(t), as of `extrema`; they touch 0 where the back flanks graze."""
+
+    @property
     def stiffness_jumps(self) -> np.ndarray:
         """Events at which C(t) jumps, with the columns of `solvers.reduced.variational`."""
 

@@ -10,6 +10,9 @@ from gearmesh.dynamics.branches import field_family
 from gearmesh.dynamics.continuation import Curve, Family, Point, clear_phase
 from gearmesh.dynamics.shots import Shot
 from gearmesh.dynamics.special_points import (
+    BACK,
+    FRONT,
+    Extrema,
     SpecialPoint,
     flip_test,
     search,
@@ -128,11 +131,11 @@ def _turned_back(left: Point) -> Callable[[Point], float]:
     return lambda point: float(point.tangent[-2:] @ left.tangent[-2:])
 
 
-def _least_height(level: float) -> Callable[[Shot], float]:
-    """Return the height above a level, in multiples of the backlash, of the extremum next to it."""
+def _least_height(extrema: Extrema) -> Callable[[Shot], float]:
+    """Return the height of the extremum that is nearest to 0."""
 
     def height(orbit: Shot) -> float:
-        above = orbit.extrema[:, 1] - level * orbit.problem.backlash
+        above = extrema(orbit)[:, 1]
         return float(above[np.argmin(np.abs(above))])
 
     return height
@@ -148,7 +151,7 @@ _CONDITIONS: dict[str, Callable[[Shot], float]] = {
     "fold": lambda orbit: float(np.linalg.det(orbit.gradient)),
     "flip": flip_test,
     "torus": torus_test,
-    "grazing_front": _least_height(0.0),
-    "grazing_back": _least_height(-1.0),
+    "grazing_front": _least_height(FRONT),
+    "grazing_back": _least_height(BACK),
     "switching": _least_velocity,
 }

@@ -133,8 +133,9 @@ def follow(orbit: Orbit, parameter: str, limits: Limits) -> Branch:
     -------
     Branch
         Orbits along the branch, and its special points, located to 1e-8 in the parameter. If the
-        pair has terms that only the general solver knows, `switching` points are not located, and
-        a `torus` point closer than 1e-6 to a grazing is located only to 1e-7.
+        pair has terms that only the general solver knows, a `torus` point closer than 1e-6 to a
+        grazing is located only to 1e-7. If the backlash varies and the damping jumps at the back
+        flanks, a `grazing_back` point may be left out.
 
     Raises
     ------

@@ -10,23 +10,25 @@ from gearmesh.study.cases import Mechanisms, Study
 def orbits(study: Study, places: Places, letter: str) -> list[Path]:
     """Follow the orbits of the variants of one letter of Tab. 1, and locate their special points.
 
-    All is done a second time without friction and on rigid supports, for the special points.
+    Those of the same branches are located again without friction and on rigid supports.
     """
     import json
 
     from gearmesh.data.writing import write_text
     from gearmesh.reproduction.mechanisms import files, tables
-    from gearmesh.reproduction.mechanisms.attractors import all_branches
+    from gearmesh.reproduction.mechanisms.attractors import all_branches, carried, reached
     from gearmesh.reproduction.mechanisms.orbits import WITHOUT_SUPPORTS
 
     names = _mechanisms(study).by_letter[letter]
+    limits = float(study.nu[0]), float(study.nu[-1])
     simpler = study.pair.replace(**WITHOUT_SUPPORTS)
     made, rows = [], []
     for name in names:
-        found = all_branches(study.pair, name, study.nu)
+        found = all_branches(study.pair, name, limits, reached(study.pair, name, study.nu))
+        again = all_branches(simpler, name, limits, carried(simpler, found))
         made += [tables.table(name, found)] if found else []
         rows += tables.rows(name, found, {})
-        rows += tables.rows(name, all_branches(simpler, name, study.nu), WITHOUT_SUPPORTS)
+        rows += tables.rows(name, again, WITHOUT_SUPPORTS)
     dataset, points = places.orbits(letter)
     files.write(dataset, tables.joined(made), study, "branches of orbits")
     write_text(points, json.dumps(rows))

@@ -6,7 +6,7 @@ are closed (isolas): nothing leads to them from another branch. Each stable orbi
 ends and that lies on no branch so far therefore begins a branch of its own.
 """
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator
 from dataclasses import replace
 
 import numpy as np
@@ -17,7 +17,7 @@ from gearmesh.dynamics.attraction.basins import grid
 from gearmesh.dynamics.attraction.classification import classify
 from gearmesh.errors import NoOrbit
 from gearmesh.interface.branches import Branch, follow
-from gearmesh.interface.orbits import Orbit
+from gearmesh.interface.orbits import Orbit, find_orbit
 from gearmesh.model.problem import Problem, State
 from gearmesh.model.variants import variant as read_variant
 from gearmesh.reproduction.mechanisms.orbits import Range, branches, doubled
@@ -27,12 +27,13 @@ EVERY = 16
 """Runs from other initial states begin at every sixteenth ν_s of a study."""
 
 _NEAR = 0.1  # difference of extremes from those between two points of a branch, in y_st
+_TRIED = 8  # orbits of a branch that are carried to a similar pair
 _DECIMALS = 5  # of extremes, in y_st
 _AT = 1e-9  # distance in ν_s of a point that is at the frequency
 
 
-def all_branches(pair: Pair, variant: str, nus: np.ndarray) -> list[Branch]:
-    """Return the branches of one variant: those of `orbits`, then those of further attractors.
+def all_branches(pair: Pair, variant: str, limits: Range, ends: Iterable[Orbit]) -> list[Branch]:
+    """Return the branches of one variant: those of `orbits`, then those of further orbits.
 
     Parameters
     ----------
@@ -40,13 +41,14 @@ def all_branches(pair: Pair, variant: str, nus: np.ndarray) -> list[Branch]:
         The gear pair.
     variant : str
         Name of the variant, such as ``c-lubricant``.
-    nus : ndarray, shape (n,)
-        The mesh frequencies ν_s of the study, ascending.
+    limits : tuple of float
+        Range of ν_s.
+    ends : iterable of Orbit
+        The further orbits, such as those that are `reached` or `carried`.
     """
-    limits = float(nus[0]), float(nus[-1])
     single = branches(pair, variant, limits)
     known = [*single, *doubled(single, limits)]
-    return [*known, *further(known, reached(pair, variant, nus), limits)]
+    return [*known, *further(known, ends, limits)]
 
 
 def reached(pair: Pair, variant: str, nus: np.ndarray) -> list[Orbit]:
@@ -57,6 +59,15 @@ def reached(pair: Pair, variant: str, nus: np.ndarray) -> list[Orbit]:
     are motions from which the runs are still far after 60 revolutions
     (`gearmesh.dynamics.attraction.classification`). Without damping there are none, because no
     motion attracts another.
+
+    Parameters
+    ----------
+    pair : Pair
+        The gear pair.
+    variant : str
+        Name of the variant, such as ``c-lubricant``.
+    nus : ndarray, shape (n,)
+        The mesh frequencies ν_s of the study, ascending.
     """
     chosen = read_variant(variant)
     cases = [pair.problem(chosen, float(nu)) for nu in nus]
@@ -77,7 +88,28 @@ def _from_grid(case: Problem) -> list[Problem]:
     return [replace(case, initial_state=State(*state)) for state in grid(case).tolist()]
 
 
-def further(known: Iterable[Branch], ends: Sequence[Orbit], limits: Range) -> Iterator[Branch]:
+def carried(pair: Pair, known: Iterable[Branch]) -> Iterator[Orbit]:
+    """Yield orbits of a pair that lie close to stable orbits of a similar one.
+
+    Parameters
+    ----------
+    pair : Pair
+        The gear pair.
+    known : iterable of Branch
+        Branches of the similar pair.
+    """
+    for branch in known:
+        stable = np.flatnonzero(branch.found.stable)
+        for i in stable[:: len(stable) // _TRIED + 1].tolist():
+            orbit = branch.at(i)
+            start, periods = (orbit.found.y, orbit.found.v), orbit.periods
+            try:
+                yield find_orbit(pair, orbit.variant, orbit.nu, periods=periods, start=start)
+            except NoOrbit:
+                continue
+
+
+def further(known: Iterable[Branch], ends: Iterable[Orbit], limits: Range) -> Iterator[Branch]:
     """Follow the orbits that lie on no branch so far, each in both directions.
 
     Where such a branch ends at a flip of an orbit of half the period, that orbit is followed too.

@@ -1,5 +1,7 @@
 """What is measured on a run in the six coordinates: extrema, shares and samples."""
 
+from typing import NamedTuple
+
 import numpy as np
 
 from gearmesh.model.contact import CONTACT_LOSS, INVERSE_MESH
@@ -40,6 +42,29 @@ SAMPLE = np.dtype(
         )
     ]
 )
+
+
+class Step(NamedTuple):
+    """A step of a run.
+
+    Attributes
+    ----------
+    start, duration : float
+        In tau_s; `start` counts from the start of the run.
+    period, segment : int
+        The mesh period, and the place of the segment in it.
+    y, gap : ndarray, shape (order + 1,)
+        Taylor coefficients of y and, if the backlash varies, of y + s(t), from the start of the
+        step.
+    """
+
+    start: float
+    duration: float
+    period: int
+    segment: int
+    y: np.ndarray
+    gap: np.ndarray
+
 
 _GRID = 8
 _MOST_ITERATIONS = 20

@@ -6,7 +6,7 @@ truncated Fourier stiffness), and checks the others.
 """
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import replace
 
 import numpy as np
@@ -22,10 +22,11 @@ from gearmesh.solvers import limits
 from gearmesh.solvers.compilation import persistent
 from gearmesh.solvers.full import kernel
 from gearmesh.solvers.full.coordinates import embedding, kinds_of_period, projected, signs_act
-from gearmesh.solvers.full.measures import SAMPLE, SUMMARY
+from gearmesh.solvers.full.measures import SAMPLE, SUMMARY, Step
 from gearmesh.solvers.full.recurrences import raise_failures, recurrences
 from gearmesh.solvers.full.roots import MAX_DEGREE, TABLE_ROWS, WIDTH
 from gearmesh.solvers.full.series import CASE, CONTINUED, MODE, SEGMENT
+from gearmesh.solvers.full.tape import GAP, Y
 from gearmesh.solvers.response import (
     EXTREMUM,
     LOOSENING,
@@ -104,6 +105,11 @@ def integrate(
         run.rotation_drift,
         float(run.summary["least_contact_force"]),
     )
+
+
+def steps_of(problem: Problem, tolerance: float) -> Iterator[Step]:
+    """Yield the steps of a run; they end early if it cannot be integrated."""
+    return _Run(problem, False).steps(tolerance)
 
 
 class Propagation:
@@ -196,6 +202,32 @@ class _Run:
         There is `room` for that many extrema; further ones are only counted. `displacement`
         displaces wheel 3 at the start.
         """
+        self._begin(tolerance, order, samples_per_period, room, displacement)
+        while not self._go_on(samples_per_period, _MOST_TURNS):
+            pass
+
+    def steps(self, tolerance: float) -> Iterator[Step]:
+        """Integrate the run, and yield its steps."""
+        self._begin(tolerance, None, 0, 0, 0.0)
+        mode, size = self.mode[0], int(self._case["order"][0]) + 1
+        taken, reached = 0, 0.0
+        while not self._go_on(0, 1):
+            if self.summary["steps"] == taken:
+                continue
+            taken, start = int(self.summary["steps"]), reached
+            reached = float(mode["period"] * self.problem.period + mode["time"])
+            place = int(mode["period"]), int(mode["segment"])
+            rows = (self._series[row, :size].copy() for row in (Y, GAP))
+            yield Step(start, reached - start, *place, *rows)
+
+    def _begin(
+        self,
+        tolerance: float,
+        order: int | None,
+        samples_per_period: int,
+        room: int,
+        displacement: float,
+    ) -> None:
         self._case["tolerance"] = tolerance
         self._case["order"] = order or suitable_order(tolerance)
         summaries = np.zeros(1, SUMMARY)
@@ -211,22 +243,25 @@ class _Run:
         self.strobes = np.zeros((self.problem.periods + 1, 2))
         self.extrema = np.zeros(room, EXTREMUM)
         self.samples = np.zeros(samples_per_period * self.problem.kept_periods, SAMPLE)
-        over = False
-        while not over:
-            over = _compiled_run(
-                self._case,
-                *self._arguments,
-                self.state,
-                self.mode,
-                self.strobes,
-                self.extrema,
-                self.samples,
-                samples_per_period,
-                summaries,
-                _MOST_TURNS,
-                self._series,
-            )
-            raise_failures()
+        self._summaries = summaries
+
+    def _go_on(self, samples_per_period: int, most_turns: int) -> bool:
+        """Continue the run by some steps, and return whether it is over."""
+        over = _compiled_run(
+            self._case,
+            *self._arguments,
+            self.state,
+            self.mode,
+            self.strobes,
+            self.extrema,
+            self.samples,
+            samples_per_period,
+            self._summaries,
+            most_turns,
+            self._series,
+        )
+        raise_failures()
+        return over
 
     def final_state(self) -> State:
         """Return the state at the end of the run."""
