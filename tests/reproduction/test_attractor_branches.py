@@ -13,12 +13,10 @@ from gearmesh.model.variants import variant
 from gearmesh.reproduction.mechanisms import tables
 from gearmesh.reproduction.mechanisms.attractors import (
     all_branches,
-    carried,
     further,
     holds,
     reached,
 )
-from gearmesh.reproduction.mechanisms.orbits import WITHOUT_SUPPORTS
 from gearmesh.solvers.simulation import simulate
 
 NAME = "c-lubricant"
@@ -87,11 +85,3 @@ def test_an_orbit_on_a_branch_begins_no_other(found):
     along = [isola.at(i) for i in range(0, len(isola.found.values), 7)]
     assert all(holds(isola, orbit) for orbit in along)
     assert not list(further(found, along, LIMITS))
-
-
-def test_the_branches_of_a_similar_pair_are_carried_over(pair, found):
-    simpler = pair.replace(**WITHOUT_SUPPORTS)
-    isola = next(branch for branch in found if branch.orbit.periods == 3)
-    (again,) = further([], carried(simpler, [isola]), LIMITS)
-    assert again.orbit.periods == 3
-    assert again.found.values.min() == pytest.approx(isola.found.values.min(), abs=2e-3)

@@ -10,13 +10,13 @@ from gearmesh.study.cases import Mechanisms, Study
 def orbits(study: Study, places: Places, letter: str) -> list[Path]:
     """Follow the orbits of the variants of one letter of Tab. 1, and locate their special points.
 
-    Those of the same branches are located again without friction and on rigid supports.
+    Those of periods 1 and 2 are located again without friction and on rigid supports.
     """
     import json
 
     from gearmesh.data.writing import write_text
     from gearmesh.reproduction.mechanisms import files, tables
-    from gearmesh.reproduction.mechanisms.attractors import all_branches, carried, reached
+    from gearmesh.reproduction.mechanisms.attractors import all_branches, reached
     from gearmesh.reproduction.mechanisms.orbits import WITHOUT_SUPPORTS
 
     names = _mechanisms(study).by_letter[letter]
@@ -25,7 +25,7 @@ def orbits(study: Study, places: Places, letter: str) -> list[Path]:
     made, rows = [], []
     for name in names:
         found = all_branches(study.pair, name, limits, reached(study.pair, name, study.nu))
-        again = all_branches(simpler, name, limits, carried(simpler, found))
+        again = all_branches(simpler, name, limits, ends=[])
         made += [tables.table(name, found)] if found else []
         rows += tables.rows(name, found, {})
         rows += tables.rows(name, again, WITHOUT_SUPPORTS)

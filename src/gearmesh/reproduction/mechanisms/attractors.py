@@ -17,7 +17,7 @@ from gearmesh.dynamics.attraction.basins import grid
 from gearmesh.dynamics.attraction.classification import classify
 from gearmesh.errors import NoOrbit
 from gearmesh.interface.branches import Branch, follow
-from gearmesh.interface.orbits import Orbit, find_orbit
+from gearmesh.interface.orbits import Orbit
 from gearmesh.model.problem import Problem, State
 from gearmesh.model.variants import variant as read_variant
 from gearmesh.reproduction.mechanisms.orbits import Range, branches, doubled
@@ -27,7 +27,6 @@ EVERY = 16
 """Runs from other initial states begin at every sixteenth ν_s of a study."""
 
 _NEAR = 0.1  # difference of extremes from those between two points of a branch, in y_st
-_TRIED = 8  # orbits of a branch that are carried to a similar pair
 _DECIMALS = 5  # of extremes, in y_st
 _AT = 1e-9  # distance in ν_s of a point that is at the frequency
 
@@ -44,7 +43,7 @@ def all_branches(pair: Pair, variant: str, limits: Range, ends: Iterable[Orbit])
     limits : tuple of float
         Range of ν_s.
     ends : iterable of Orbit
-        The further orbits, such as those that are `reached` or `carried`.
+        The further orbits, such as those that are `reached`.
     """
     single = branches(pair, variant, limits)
     known = [*single, *doubled(single, limits)]
@@ -86,27 +85,6 @@ def _name(orbit: orbits.Orbit) -> tuple[float, ...]:
 
 def _from_grid(case: Problem) -> list[Problem]:
     return [replace(case, initial_state=State(*state)) for state in grid(case).tolist()]
-
-
-def carried(pair: Pair, known: Iterable[Branch]) -> Iterator[Orbit]:
-    """Yield orbits of a pair that lie close to stable orbits of a similar one.
-
-    Parameters
-    ----------
-    pair : Pair
-        The gear pair.
-    known : iterable of Branch
-        Branches of the similar pair.
-    """
-    for branch in known:
-        stable = np.flatnonzero(branch.found.stable)
-        for i in stable[:: len(stable) // _TRIED + 1].tolist():
-            orbit = branch.at(i)
-            start, periods = (orbit.found.y, orbit.found.v), orbit.periods
-            try:
-                yield find_orbit(pair, orbit.variant, orbit.nu, periods=periods, start=start)
-            except NoOrbit:
-                continue
 
 
 def further(known: Iterable[Branch], ends: Iterable[Orbit], limits: Range) -> Iterator[Branch]:

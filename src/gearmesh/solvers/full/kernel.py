@@ -53,7 +53,7 @@ _regime_of = inner(regime_of)
 
 @inner
 def _count_loss(case, mode, summary):
-    """Count a contact loss in the kept revolutions. Flanks that have parted lost it before."""
+    """Count a contact loss in a kept revolution; parted flanks have lost contact already."""
     if mode.period >= case.first_kept and not mode.parted:
         summary.contact_losses += 1
 
@@ -158,8 +158,7 @@ def _rounding(state):
 @inner
 def _rests(row, degree, step, rest):
     """Return whether a series stays below `rest` throughout the step."""
-    total = 0.0
-    power = 1.0
+    total, power = 0.0, 1.0
     for k in range(degree + 1):
         total += abs(row[k]) * power
         if total >= rest:
@@ -261,8 +260,7 @@ def _follow(case, segment, mode, state, event, summary):
 def _pass_boundary(case, mode, state, tape, variant, series, strobes, summary):
     """Enter the next mesh period and write its stroboscopic point."""
     mode.period += 1
-    mode.time = 0.0
-    mode.segment = 0
+    mode.time, mode.segment = 0.0, 0
     mode.entered = True
     begin(case, mode, state, tape, variant, series)
     strobes[mode.period, 0] = series[Y, 0]
@@ -281,8 +279,7 @@ def _start(case, mode, pairs, state, tape, variant, series, strobes, summary):
     if mode.stage == NEW:
         gap = series[GAP, 0] - y if case.varying_backlash else case.backlash
         mode.regime = _regime_of(y, gap)
-        mode.run_out_sign = 1.0
-        mode.slip_sign = 1.0
+        mode.run_out_sign = mode.slip_sign = 1.0
         if case.follows_run_out and series[BRACKET, 0] < 0.0:
             mode.run_out_sign = -1.0
         if case.single_pairs:
@@ -345,9 +342,7 @@ def run(
     bool
         Whether the run is over.
     """
-    case = cases[0]
-    summary = summaries[0]
-    mode = modes[0]
+    case, summary, mode = cases[0], summaries[0], modes[0]
     # Counting references to the arrays would take as long as the series of a step.
     tape = unowned(tape[0]), unowned(tape[1])
     segments, variants, state = unowned(segments), unowned(variants), unowned(state)
