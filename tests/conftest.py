@@ -61,12 +61,6 @@ def pair(study: Study) -> Pair:
 
 
 @pytest.fixture(scope="session")
-def parameters(pair: Pair) -> Pair:
-    """The pair, by its former name; tests/data still asks for it."""
-    return pair
-
-
-@pytest.fixture(scope="session")
 def small_study() -> Study:
     return load_study(ROOT / "config" / "smoke.yaml")
 

@@ -33,16 +33,16 @@ LISTED = {
 
 
 @pytest.fixture(scope="module")
-def response(parameters) -> Response:
-    problem = parameters.problem(CASE.variant, CASE.nu)
-    return integrator.simulate([problem], parameters.tolerance, 256)[0]
+def response(pair) -> Response:
+    problem = pair.problem(CASE.variant, CASE.nu)
+    return integrator.simulate([problem], pair.tolerance, 256)[0]
 
 
 @pytest.fixture
-def written(tmp_path, parameters, response):
+def written(tmp_path, pair, response):
     path = tmp_path / "case.nc"
-    attributes = casefile.attributes(parameters, CASE)
-    casefile.write_case(path, attributes, casefile.record(response, parameters))
+    attributes = casefile.attributes(pair, CASE)
+    casefile.write_case(path, attributes, casefile.record(response, pair))
     return path
 
 
@@ -56,13 +56,13 @@ def test_xarray_opens_it_without_options_and_finds_all_that_is_listed(written, r
     assert case.sizes["extremum"] == response.extremum_y.size
 
 
-def test_every_variable_has_unit_and_name_and_lengths_stand_twice(written, parameters):
+def test_every_variable_has_unit_and_name_and_lengths_stand_twice(written, pair):
     case = xr.open_dataset(written)
     for name, variable in case.variables.items():
         assert variable.attrs["long_name"], name
         assert variable.attrs["units"] in ("1", "s", "mm", "N", "N/mm"), name
         if variable.attrs["units"] == "mm":
-            scale = parameters.static_deflection
+            scale = pair.static_deflection
             np.testing.assert_array_equal(variable, case[f"{name}_rel"] * scale)
             assert case[f"{name}_rel"].attrs["units"] == "1"
 
@@ -75,13 +75,13 @@ def test_flags_follow_cf(written):
         assert set(np.unique(case[name])) <= set(stated["flag_values"].tolist())
 
 
-def test_attributes_say_how_it_was_made(written, parameters):
+def test_attributes_say_how_it_was_made(written, pair):
     stated = xr.open_dataset(written).attrs
     assert stated["Conventions"] == "CF-1.11"
     assert (stated["variant"], stated["nu_s"]) == ("c-lubricant", 0.66)
-    assert json.loads(stated["parameters"])["backlash"] == parameters.backlash
-    assert stated["parameters_sha256"] == parameters.digest()
-    assert stated["solver_tolerance"] == parameters.tolerance
+    assert json.loads(stated["parameters"])["backlash"] == pair.backlash
+    assert stated["parameters_sha256"] == pair.digest()
+    assert stated["solver_tolerance"] == pair.tolerance
     for name in ("gearmesh_version", "numba_version", "numpy_version", "physics_sources_sha256"):
         assert stated[name]
 
@@ -105,19 +105,17 @@ def test_a_damaged_file_is_refused(written, tmp_path):
             casefile.read_case(harmed)
 
 
-def test_a_case_depends_on_what_acts_on_it_only(parameters):
+def test_a_case_depends_on_what_acts_on_it_only(pair):
     conservative = Case(variant("a-conservative"), 0.66)
-    more = parameters.replace(damping="5 N s/mm")
-    assert casefile.case_digest(more, conservative) == casefile.case_digest(
-        parameters, conservative
-    )
-    assert casefile.case_digest(more, CASE) != casefile.case_digest(parameters, CASE)
+    more = pair.replace(damping="5 N s/mm")
+    assert casefile.case_digest(more, conservative) == casefile.case_digest(pair, conservative)
+    assert casefile.case_digest(more, CASE) != casefile.case_digest(pair, CASE)
 
 
-def test_a_failed_case_is_written_with_its_reason(tmp_path, parameters):
+def test_a_failed_case_is_written_with_its_reason(tmp_path, pair):
     path = tmp_path / "failed.nc"
-    failed = casefile.record(Response("step_limit", 9.5), parameters)
-    casefile.write_case(path, casefile.attributes(parameters, CASE), failed)
+    failed = casefile.record(Response("step_limit", 9.5), pair)
+    casefile.write_case(path, casefile.attributes(pair, CASE), failed)
     case = xr.open_dataset(path)
     meanings = case["status"].attrs["flag_meanings"].split()
     assert meanings[int(case["status"])] == "step_limit"
@@ -127,9 +125,9 @@ def test_a_failed_case_is_written_with_its_reason(tmp_path, parameters):
     assert np.isnan(case["y_max"])
 
 
-def test_a_file_that_cannot_be_written_is_told_and_leaves_nothing(tmp_path, parameters, response):
+def test_a_file_that_cannot_be_written_is_told_and_leaves_nothing(tmp_path, pair, response):
     (tmp_path / "file").touch()
-    columns = casefile.record(response, parameters)
+    columns = casefile.record(response, pair)
     with pytest.raises(InputError, match=r"file/case\.nc: cannot be written"):
         casefile.write_case(tmp_path / "file" / "case.nc", {}, columns)
     assert [path.name for path in tmp_path.iterdir()] == ["file"]

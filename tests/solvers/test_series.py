@@ -117,10 +117,11 @@ RUN_OUT = problem(
     [(0, 1), (0, -1), (1, 1), (1, -1), (1, 0), (2, 1), (2, -1), (2, 0)],
 )
 def test_the_full_recurrence_is_the_statement(regime, part, slip_sign):
-    cases = general._case(RUN_OUT, 1e-10, ORDER, 6)
+    cases = general._case(RUN_OUT, 6)
+    cases["order"] = ORDER
     phases, _ = kinds_of_period(RUN_OUT)
     code = recurrences(RUN_OUT, phases, sampled=False)
-    segments = general._segments(RUN_OUT)
+    segments = general._segments(RUN_OUT)[0]
     start = 0.0 if part == 0 else segments["end"][part - 1]
     modes = np.zeros(1, full_series.MODE)
     modes["segment"] = part
