@@ -50,7 +50,7 @@ def special_table(rows: Sequence[Row]) -> list[tuple[str, str, int, list[str], l
     -------
     list of tuple
         Variant, kind, period, and the ν_s to ten digits: with the parameters of the study, and
-        without friction on rigid supports.
+        without friction on rigid supports. Points that agree in ten digits are listed once.
     """
     order = {name: i for i, name in enumerate(dict.fromkeys(row["variant"] for row in rows))}
     found: dict[tuple[str, str, int], tuple[list[str], list[str]]] = {}
@@ -59,7 +59,7 @@ def special_table(rows: Sequence[Row]) -> list[tuple[str, str, int, list[str], l
         columns = found.setdefault(key, ([], []))
         columns["parameters" in row].append(f"{row['nu']:.10f}")
     ordered = sorted(found, key=lambda key: (order[key[0]], key[2], KINDS.index(key[1])))
-    return [(*key, sorted(found[key][0]), sorted(found[key][1])) for key in ordered]
+    return [(*key, sorted(set(found[key][0])), sorted(set(found[key][1]))) for key in ordered]
 
 
 def answers(
