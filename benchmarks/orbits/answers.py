@@ -10,8 +10,8 @@ import numpy as np
 
 from benchmarks.orbits.known import Case, cases
 from gearmesh.dynamics.attraction.lyapunov import lyapunov_spectrum
-from gearmesh.dynamics.branches import follow
-from gearmesh.dynamics.orbits import find_orbit
+from gearmesh.dynamics.continuation.branches import follow
+from gearmesh.dynamics.periodic.orbits import find_orbit
 from gearmesh.dynamics.starts import linear_orbit
 from gearmesh.model.problem import Problem
 from gearmesh.solvers.reduced.period_map import passage

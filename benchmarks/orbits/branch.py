@@ -9,8 +9,8 @@ import gearmesh as gm
 from benchmarks.orbits import heyoka_map, scipy_map, settling
 from benchmarks.orbits.newton import newton
 from benchmarks.reduced import initial_state
-from gearmesh.dynamics.branches import Branch
-from gearmesh.dynamics.orbits import Orbit, find_orbit
+from gearmesh.dynamics.continuation.branches import Branch
+from gearmesh.dynamics.periodic.orbits import Orbit, find_orbit
 
 VARIANT, LIMITS, BEGIN = "c-material", (0.6, 1.2), 0.9
 EVERY_SCIPY, EVERY_BRUTE = 16, 4

@@ -7,9 +7,9 @@ import pytest
 from problems import problem
 from scipy.optimize import brentq
 
-from gearmesh.dynamics.branches import double_period, follow
-from gearmesh.dynamics.orbits import LARGEST_RESIDUAL, find_orbit
-from gearmesh.dynamics.walks import CLOSED, HALVED, LIMIT
+from gearmesh.dynamics.continuation.branches import double_period, follow
+from gearmesh.dynamics.continuation.walks import CLOSED, HALVED, LIMIT
+from gearmesh.dynamics.periodic.orbits import LARGEST_RESIDUAL, find_orbit
 from gearmesh.errors import NoOrbit
 from gearmesh.solvers.reduced.variational import KIND, SWITCH, VELOCITY
 

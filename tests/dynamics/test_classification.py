@@ -9,7 +9,7 @@ from problems import of_paper, problem
 from gearmesh.dynamics.attraction.attractors import CHAOTIC, LOST, MOVING, NEUTRAL, PERIODIC
 from gearmesh.dynamics.attraction.classification import SETTLED, classify
 from gearmesh.dynamics.attraction.envelopes import envelope_of
-from gearmesh.dynamics.orbits import find_orbit
+from gearmesh.dynamics.periodic.orbits import find_orbit
 from gearmesh.dynamics.starts import initial_coordinates
 from gearmesh.solvers.reduced.period_map import passage
 from gearmesh.solvers.reduced.variational import REGIME, TIME

@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 from problems import problem
 
-from gearmesh.dynamics import general_search
 from gearmesh.dynamics.attraction.attractors import NEUTRAL, PERIODIC
 from gearmesh.dynamics.attraction.basins import basins, reached
 from gearmesh.dynamics.attraction.lyapunov import lyapunov_spectrum
 from gearmesh.dynamics.attraction.maps import map_of
+from gearmesh.dynamics.periodic import general_search
 from gearmesh.model.functions import Harmonic
 from gearmesh.model.motion import state_at
 from gearmesh.model.problem import GeneralTerms

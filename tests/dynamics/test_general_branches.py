@@ -10,9 +10,10 @@ from independent_equations import backlash, relative_motion
 from problems import problem
 
 import gearmesh as gm
-from gearmesh.dynamics import branches, general_search, orbits
-from gearmesh.dynamics.general_orbits import shot_from
-from gearmesh.dynamics.special_curves import follow_special
+from gearmesh.dynamics.continuation import branches
+from gearmesh.dynamics.continuation.special_curves import follow_special
+from gearmesh.dynamics.periodic import general_search, orbits
+from gearmesh.dynamics.periodic.general_orbits import shot_from
 from gearmesh.errors import NoOrbit
 from gearmesh.model.functions import Harmonic
 from gearmesh.model.problem import GeneralTerms, State

@@ -7,9 +7,9 @@ import pytest
 from problems import problem
 
 import gearmesh as gm
-from gearmesh.dynamics import general_search, orbits
-from gearmesh.dynamics.charts import state_at_place as state_of
-from gearmesh.dynamics.general_orbits import shot_from
+from gearmesh.dynamics.periodic import general_search, orbits
+from gearmesh.dynamics.periodic.charts import state_at_place as state_of
+from gearmesh.dynamics.periodic.general_orbits import shot_from
 from gearmesh.errors import NoOrbit
 from gearmesh.model.functions import Harmonic
 from gearmesh.model.problem import GeneralTerms

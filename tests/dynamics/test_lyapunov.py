@@ -5,7 +5,7 @@ import pytest
 from problems import problem
 
 from gearmesh.dynamics.attraction.lyapunov import lyapunov_spectrum
-from gearmesh.dynamics.orbits import find_orbit
+from gearmesh.dynamics.periodic.orbits import find_orbit
 from gearmesh.errors import NoOrbit
 from gearmesh.solvers.reduced.period_map import passage
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from problems import problem
 
-from gearmesh.dynamics.orbits import LARGEST_RESIDUAL, correct, find_orbit
+from gearmesh.dynamics.periodic.orbits import LARGEST_RESIDUAL, correct, find_orbit
 from gearmesh.dynamics.starts import coordinates
 from gearmesh.errors import NoOrbit
 from gearmesh.model.problem import State

@@ -5,7 +5,7 @@ import pytest
 from problems import problem
 from resolvent import AT_END, Piece, solve, times_of
 
-from gearmesh.dynamics.orbits import find_orbit
+from gearmesh.dynamics.periodic.orbits import find_orbit
 from gearmesh.model.contact import CONTACT_LOSS, INVERSE_MESH, NORMAL_MESH, regime_of
 from gearmesh.model.segments import segments
 from gearmesh.solvers.reduced.variational import (

@@ -7,8 +7,8 @@ import pytest
 from problems import problem
 
 import gearmesh as gm
-from gearmesh.dynamics import general_search
-from gearmesh.dynamics.charts import state_at_place
+from gearmesh.dynamics.periodic import general_search
+from gearmesh.dynamics.periodic.charts import state_at_place
 from gearmesh.errors import NoOrbit
 from gearmesh.model.functions import Harmonic
 from gearmesh.model.problem import GeneralTerms

@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 from problems import problem
 
-from gearmesh.dynamics.branches import follow
-from gearmesh.dynamics.orbits import LARGEST_RESIDUAL, find_orbit
-from gearmesh.dynamics.special_curves import follow_special
-from gearmesh.dynamics.walks import LIMIT
+from gearmesh.dynamics.continuation.branches import follow
+from gearmesh.dynamics.continuation.special_curves import follow_special
+from gearmesh.dynamics.continuation.walks import LIMIT
+from gearmesh.dynamics.periodic.orbits import LARGEST_RESIDUAL, find_orbit
 from gearmesh.errors import NoOrbit
 
 HEAVY = {"body_mass": 1000.0}

@@ -8,7 +8,7 @@ from orbits_in_tables import distance
 
 from gearmesh.dynamics.attraction.attractors import PERIODIC
 from gearmesh.dynamics.attraction.classification import classify
-from gearmesh.dynamics.orbits import correct
+from gearmesh.dynamics.periodic.orbits import correct
 from gearmesh.model.variants import variant
 from gearmesh.reproduction.mechanisms import tables
 from gearmesh.reproduction.mechanisms.attractors import (

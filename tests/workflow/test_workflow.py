@@ -195,7 +195,7 @@ INCREMENTS = {
     "thresholds": ("src/gearmesh/reproduction/thresholds.py", '"""', '""" ', AFTER_THRESHOLDS),
     "datasets": ("src/gearmesh/data/datasets.py", '"""', '""" ',
                  {"branches", *AFTER_CASES, *AFTER_BRANCHES}),
-    "orbits": ("src/gearmesh/dynamics/branches.py", '"""', '""" ',
+    "orbits": ("src/gearmesh/dynamics/continuation/branches.py", '"""', '""" ',
                {"orbits-c", "branches", *AFTER_BRANCHES}),
     "why": ("notebooks/why.ipynb", "## Basins", "## The basins",
             {"why", "notebook_pages", *REPORTED}),

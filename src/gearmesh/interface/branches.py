@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from gearmesh.dynamics import branches, special_curves, special_points
-from gearmesh.dynamics.continuation import Family
+from gearmesh.dynamics.continuation import branches, special_curves, special_points
+from gearmesh.dynamics.continuation.curves import Family
 from gearmesh.errors import InputError
 from gearmesh.interface.lengths import with_lengths
 from gearmesh.interface.orbits import Orbit
@@ -53,7 +53,7 @@ class Branch:
     ----------
     orbit : Orbit
         Where the branch was entered.
-    found : gearmesh.dynamics.branches.Branch
+    found : gearmesh.dynamics.continuation.branches.Branch
         The branch in dimensionless form.
     """
 

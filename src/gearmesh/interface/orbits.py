@@ -6,9 +6,9 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from gearmesh.dynamics import general_search, orbits
-from gearmesh.dynamics.general_orbits import GeneralOrbit
-from gearmesh.dynamics.shots import Shot
+from gearmesh.dynamics.periodic import general_search, orbits
+from gearmesh.dynamics.periodic.general_orbits import GeneralOrbit
+from gearmesh.dynamics.periodic.shots import Shot
 from gearmesh.dynamics.starts import coordinates
 from gearmesh.errors import InputError, NoOrbit
 from gearmesh.interface.lengths import with_lengths
@@ -43,8 +43,8 @@ class Orbit:
     variant : Variant
     nu : float
         Mesh frequency ν_s.
-    found : gearmesh.dynamics.orbits.Orbit or gearmesh.dynamics.general_orbits.GeneralOrbit
-        The orbit in dimensionless form; the latter if only the general solver serves the pair.
+    found : gearmesh.dynamics.periodic.shots.Shot
+        The orbit in dimensionless form, of either solver.
     """
 
     pair: Pair

@@ -8,7 +8,7 @@ from functools import cached_property
 import numpy as np
 
 from gearmesh.dynamics.attraction.maps import PoincareMap
-from gearmesh.dynamics.shots import Shot
+from gearmesh.dynamics.periodic.shots import Shot
 from gearmesh.errors import NoOrbit
 
 PERIODIC, NEUTRAL, QUASI_PERIODIC, CHAOTIC, MOVING, LOST = (

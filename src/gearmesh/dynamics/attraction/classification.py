@@ -17,7 +17,7 @@ from gearmesh.dynamics.attraction.attractors import (
 from gearmesh.dynamics.attraction.envelopes import RISE, Envelope, envelope_of
 from gearmesh.dynamics.attraction.irregular import irregular_kinds
 from gearmesh.dynamics.attraction.maps import WEIGHTS, ReducedMap
-from gearmesh.dynamics.orbits import Orbit, correct
+from gearmesh.dynamics.periodic.orbits import Orbit, correct
 from gearmesh.dynamics.starts import initial_coordinates
 from gearmesh.errors import NoOrbit
 from gearmesh.model.problem import Problem

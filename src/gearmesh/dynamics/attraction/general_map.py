@@ -1,7 +1,8 @@
 """The Poincaré map of the general solver, over the common period of shafts and mesh.
 
-A state consists of the unknowns of an orbit (`gearmesh.dynamics.charts`). Where the mean rotation
-has to be held, a drive corrects it after every step, so states contain the holding moments.
+A state consists of the unknowns of an orbit (`gearmesh.dynamics.periodic.charts`). Where the mean
+rotation has to be held, a drive corrects it after every step, so states contain the holding
+moments.
 """
 
 import math
@@ -11,16 +12,16 @@ from itertools import product
 
 import numpy as np
 
-from gearmesh.dynamics.charts import ABSENT, HELD, chart_of, state_at_place, with_moments
-from gearmesh.dynamics.general_orbits import (
+from gearmesh.dynamics.periodic.charts import ABSENT, HELD, chart_of, state_at_place, with_moments
+from gearmesh.dynamics.periodic.general_orbits import (
     GeneralOrbit,
     common_period,
     ends,
     moved_to_phase,
     shot_from,
 )
-from gearmesh.dynamics.general_search import correct
-from gearmesh.dynamics.shots import Shot
+from gearmesh.dynamics.periodic.general_search import correct
+from gearmesh.dynamics.periodic.shots import Shot
 from gearmesh.errors import NoOrbit
 from gearmesh.model import motion
 from gearmesh.model.motion import ROTATION_2, ROTATION_3, Y_2, Y_3

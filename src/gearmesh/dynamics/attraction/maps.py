@@ -9,8 +9,8 @@ from typing import Protocol
 import numpy as np
 
 from gearmesh.dynamics.attraction.general_map import GeneralMap
-from gearmesh.dynamics.orbits import Orbit, correct
-from gearmesh.dynamics.shots import Shot
+from gearmesh.dynamics.periodic.orbits import Orbit, correct
+from gearmesh.dynamics.periodic.shots import Shot
 from gearmesh.dynamics.starts import initial_coordinates, initial_states
 from gearmesh.errors import NoOrbit
 from gearmesh.model.problem import Problem, State

@@ -15,7 +15,7 @@ import numpy as np
 from scipy.linalg import solve_discrete_lyapunov
 
 from gearmesh.dynamics.attraction.maps import PoincareMap
-from gearmesh.dynamics.shots import Shot
+from gearmesh.dynamics.periodic.shots import Shot
 
 _SIZES = (1e-5, 1e-4, 1e-3, 0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1.0)
 """Sizes that are tried, in y_st."""

@@ -15,7 +15,7 @@ from gearmesh.dynamics.attraction.envelopes import RISE, envelope_of
 from gearmesh.dynamics.attraction.irregular import irregular_kinds
 from gearmesh.dynamics.attraction.maps import PoincareMap
 from gearmesh.dynamics.attraction.regions import Region, region_of
-from gearmesh.dynamics.shots import Shot
+from gearmesh.dynamics.periodic.shots import Shot
 from gearmesh.solvers.reduced.runs import is_reducible
 
 _TRIED = 64  # states near which orbits are searched for

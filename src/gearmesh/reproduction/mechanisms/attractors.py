@@ -11,10 +11,10 @@ from dataclasses import replace
 
 import numpy as np
 
-from gearmesh.dynamics import orbits
 from gearmesh.dynamics.attraction.attractors import SAME
 from gearmesh.dynamics.attraction.basins import grid
 from gearmesh.dynamics.attraction.classification import classify
+from gearmesh.dynamics.periodic import orbits
 from gearmesh.errors import NoOrbit
 from gearmesh.interface.branches import Branch, follow
 from gearmesh.interface.orbits import Orbit

@@ -7,9 +7,10 @@ from typing import NamedTuple
 import numpy as np
 import xarray as xr
 
-from gearmesh.dynamics import branches, orbits, special_curves
-from gearmesh.dynamics.shots import Shot
-from gearmesh.dynamics.special_points import SpecialPoint
+from gearmesh.dynamics.continuation import branches, special_curves
+from gearmesh.dynamics.continuation.special_points import SpecialPoint
+from gearmesh.dynamics.periodic import orbits
+from gearmesh.dynamics.periodic.shots import Shot
 from gearmesh.errors import NoOrbit
 from gearmesh.model.problem import Problem
 from gearmesh.model.variants import variant

@@ -5,8 +5,8 @@ from typing import Any
 
 import numpy as np
 
-from gearmesh.dynamics import branches as dimensionless
-from gearmesh.dynamics import special_points
+from gearmesh.dynamics.continuation import branches as dimensionless
+from gearmesh.dynamics.continuation import special_points
 from gearmesh.errors import NoOrbit
 from gearmesh.interface.branches import Branch, SpecialPoint, follow
 from gearmesh.interface.orbits import Orbit, find_orbit

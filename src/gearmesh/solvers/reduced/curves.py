@@ -20,8 +20,8 @@ DETERMINANT, OUTCOME, N_EVENTS, DAMPING, LEAST_FORCE, Y_MAX, Y_MIN, POINT_SIZE =
     TANGENT + DIMENSIONS, TANGENT + DIMENSIONS + 8
 )
 """Columns of a point, behind its place: the end of the motion, the Jacobian, the tangent, its
-determinant (see `gearmesh.dynamics.continuation.Point`), what `propagate` returns, and the extremes
-of y."""
+determinant (see `gearmesh.dynamics.continuation.curves.Point`), what `propagate` returns, and the
+extremes of y."""
 
 LARGEST_RESIDUAL = 1e-11
 """Largest |P^n(x) - x| of an orbit, in y_st and y_st Omega_s."""

@@ -6,8 +6,8 @@ from typing import NamedTuple
 import numpy as np
 from scipy.optimize import brentq
 
-from gearmesh.dynamics.continuation import Curve, Point, clear_phase
-from gearmesh.dynamics.special_points import flip_test
+from gearmesh.dynamics.continuation.curves import Curve, Point, clear_phase
+from gearmesh.dynamics.continuation.special_points import flip_test
 from gearmesh.errors import NoOrbit
 from gearmesh.solvers.reduced.curves import FARTHEST
 

@@ -5,8 +5,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from gearmesh.dynamics.charts import HELD, chart_of
-from gearmesh.dynamics.general_orbits import (
+from gearmesh.dynamics.periodic.charts import HELD, chart_of
+from gearmesh.dynamics.periodic.general_orbits import (
     SAME,
     GeneralOrbit,
     common_period,

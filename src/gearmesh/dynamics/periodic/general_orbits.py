@@ -1,10 +1,10 @@
 """Periodic orbits of the general solver: unequal wheels, run-out, profile deviation, ...
 
-The numbers in which an orbit is sought are those of `gearmesh.dynamics.charts`, which states what
-an orbit is if the mean rotation drifts. The map over the period is smooth in them as long as the
-orbit does not graze, so differences of sixth order between runs give its Jacobian: with steps of
-1e-3 y_st both their truncation error and the rounding error of the runs stay below 1e-8. Close to
-a grazing, or where friction begins to stick, steps are smaller and the rounding error is larger.
+The numbers in which an orbit is sought are those of `charts`, which states what an orbit is if the
+mean rotation drifts. The map over the period is smooth in them as long as the orbit does not graze,
+so differences of sixth order between runs give its Jacobian: with steps of 1e-3 y_st both their
+truncation error and the rounding error of the runs stay below 1e-8. Close to a grazing, or where
+friction begins to stick, steps are smaller and the rounding error is larger.
 """
 
 import math
@@ -15,16 +15,16 @@ from itertools import chain, pairwise
 
 import numpy as np
 
-from gearmesh.dynamics.charts import (
+from gearmesh.dynamics.periodic.charts import (
     HELD,
     Chart,
     chart_of,
     state_at_place,
     with_moments,
 )
-from gearmesh.dynamics.differences import LARGEST_STEP, slope
-from gearmesh.dynamics.general_events import gap_extrema, stiffness_jumps
-from gearmesh.dynamics.orbits import TimeCourse, sorted_multipliers
+from gearmesh.dynamics.periodic.differences import LARGEST_STEP, slope
+from gearmesh.dynamics.periodic.general_events import gap_extrema, stiffness_jumps
+from gearmesh.dynamics.periodic.orbits import TimeCourse, sorted_multipliers
 from gearmesh.errors import NoOrbit
 from gearmesh.model.contact import regime_of
 from gearmesh.model.problem import Problem, State
@@ -42,7 +42,7 @@ _RESOLVED = 1e-4  # least multiplier that differences over the whole period reso
 
 @dataclass(frozen=True)
 class GeneralOrbit:
-    """A periodic orbit of the general solver, with the names of `gearmesh.dynamics.orbits.Orbit`.
+    """A periodic orbit of the general solver, with the names of `orbits.Orbit`.
 
     Attributes
     ----------
@@ -51,7 +51,7 @@ class GeneralOrbit:
     periods : int
         The least period n, in mesh periods.
     state : ndarray, shape (k,)
-        The unknowns of `gearmesh.dynamics.charts.Chart` at the initial phase.
+        The unknowns of `charts.Chart` at the initial phase.
     angle : float
         The mean rotation at the initial phase, in y_st on the base circles.
     end : ndarray, shape (2 n,)

@@ -14,8 +14,8 @@ from itertools import combinations, pairwise
 import numpy as np
 from scipy.optimize import brentq
 
-from gearmesh.dynamics.continuation import Curve, Point
-from gearmesh.dynamics.shots import Shot
+from gearmesh.dynamics.continuation.curves import Curve, Point
+from gearmesh.dynamics.periodic.shots import Shot
 from gearmesh.errors import NoOrbit
 from gearmesh.model.problem import Problem
 from gearmesh.solvers.reduced.curves import DAMPING, JACOBIAN, TANGENT

@@ -6,10 +6,9 @@ from itertools import pairwise
 
 import numpy as np
 
-from gearmesh.dynamics.branches import field_family
-from gearmesh.dynamics.continuation import Curve, Family, Point, clear_phase
-from gearmesh.dynamics.shots import Shot
-from gearmesh.dynamics.special_points import (
+from gearmesh.dynamics.continuation.branches import field_family
+from gearmesh.dynamics.continuation.curves import Curve, Family, Point, clear_phase
+from gearmesh.dynamics.continuation.special_points import (
     BACK,
     FRONT,
     Extrema,
@@ -18,7 +17,8 @@ from gearmesh.dynamics.special_points import (
     search,
     torus_test,
 )
-from gearmesh.dynamics.walks import LONGEST_STEP, joined, points_of, walk
+from gearmesh.dynamics.continuation.walks import LONGEST_STEP, joined, points_of, walk
+from gearmesh.dynamics.periodic.shots import Shot
 from gearmesh.errors import NoOrbit
 from gearmesh.solvers.reduced.variational import VELOCITY
 
@@ -40,7 +40,7 @@ class SpecialCurve:
     cusps : list of SpecialPoint
         Of a curve of folds: where two folds meet and vanish.
     ends : tuple of two str
-        Why the curve ends at its first and at its last point, see `gearmesh.dynamics.walks`.
+        Why the curve ends at its first and at its last point, see `walks`.
     """
 
     kind: str

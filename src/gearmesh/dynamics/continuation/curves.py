@@ -12,8 +12,8 @@ from functools import cached_property
 
 import numpy as np
 
-from gearmesh.dynamics.orbits import Orbit
-from gearmesh.dynamics.shots import Shot
+from gearmesh.dynamics.periodic.orbits import Orbit
+from gearmesh.dynamics.periodic.shots import Shot
 from gearmesh.errors import NoOrbit
 from gearmesh.model.problem import Problem
 from gearmesh.solvers.reduced import curves

@@ -4,15 +4,15 @@ from typing import Protocol, Self
 
 import numpy as np
 
-from gearmesh.dynamics.orbits import TimeCourse
+from gearmesh.dynamics.periodic.orbits import TimeCourse
 from gearmesh.model.problem import Problem
 
 
 class Shot(Protocol):
     """A motion over whole mesh periods; it is an orbit if its defect is 0.
 
-    `gearmesh.dynamics.orbits.Orbit` is one of the reduced system, with exact derivatives, and
-    `gearmesh.dynamics.general_orbits.GeneralOrbit` one of the general solver.
+    `orbits.Orbit` is one of the reduced system, with exact derivatives, and
+    `general_orbits.GeneralOrbit` one of the general solver.
     """
 
     @property
