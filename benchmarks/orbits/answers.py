@@ -14,8 +14,8 @@ from gearmesh.dynamics.continuation.branches import follow
 from gearmesh.dynamics.periodic.orbits import find_orbit
 from gearmesh.dynamics.starts import linear_orbit
 from gearmesh.model.problem import Problem
-from gearmesh.solvers.reduced.period_map import passage
-from gearmesh.solvers.reduced.variational import HEIGHT, KIND, TIME, TURN
+from gearmesh.solvers.reduced.derivatives.period_map import passage
+from gearmesh.solvers.reduced.derivatives.variational import HEIGHT, KIND, TIME, TURN
 
 Answers = dict[str, float]
 

@@ -22,8 +22,8 @@ from gearmesh.dynamics.attraction.maps import map_of
 from gearmesh.dynamics.attraction.regions import region_of
 from gearmesh.dynamics.starts import initial_states
 from gearmesh.model.problem import State
+from gearmesh.solvers.reduced.derivatives.period_map import passage
 from gearmesh.solvers.reduced.ensembles import advance, advance_to_phase, laws_of
-from gearmesh.solvers.reduced.period_map import passage
 from gearmesh.solvers.simulation import simulate
 
 HEAVY = {"body_mass": 1000.0}

@@ -11,7 +11,7 @@ from gearmesh.dynamics.continuation.branches import double_period, follow
 from gearmesh.dynamics.continuation.walks import CLOSED, HALVED, LIMIT
 from gearmesh.dynamics.periodic.orbits import LARGEST_RESIDUAL, find_orbit
 from gearmesh.errors import NoOrbit
-from gearmesh.solvers.reduced.variational import KIND, SWITCH, VELOCITY
+from gearmesh.solvers.reduced.derivatives.variational import KIND, SWITCH, VELOCITY
 
 HEAVY = {"body_mass": 1000.0}
 FAR_BODIES = {"body_mass": 1e30, "bearing_stiffness": 1e30, "friction_coefficient": 0.0}

@@ -11,8 +11,8 @@ from gearmesh.dynamics.attraction.classification import SETTLED, classify
 from gearmesh.dynamics.attraction.envelopes import envelope_of
 from gearmesh.dynamics.periodic.orbits import find_orbit
 from gearmesh.dynamics.starts import initial_coordinates
-from gearmesh.solvers.reduced.period_map import passage
-from gearmesh.solvers.reduced.variational import REGIME, TIME
+from gearmesh.solvers.reduced.derivatives.period_map import passage
+from gearmesh.solvers.reduced.derivatives.variational import REGIME, TIME
 from gearmesh.solvers.simulation import simulate
 
 CASES = {

@@ -17,7 +17,7 @@ from gearmesh.dynamics.periodic.general_orbits import shot_from
 from gearmesh.errors import NoOrbit
 from gearmesh.model.functions import Harmonic
 from gearmesh.model.problem import GeneralTerms, State
-from gearmesh.solvers.reduced.variational import VELOCITY
+from gearmesh.solvers.reduced.derivatives.variational import VELOCITY
 
 LIMITS = (0.3845, 0.3862)
 RIPPLE = Harmonic(1.0, 0.2, 0.1)

@@ -7,7 +7,7 @@ from problems import problem
 from gearmesh.dynamics.attraction.lyapunov import lyapunov_spectrum
 from gearmesh.dynamics.periodic.orbits import find_orbit
 from gearmesh.errors import NoOrbit
-from gearmesh.solvers.reduced.period_map import passage
+from gearmesh.solvers.reduced.derivatives.period_map import passage
 
 HEAVY = {"body_mass": 1000.0}
 REST = (1.0, 0.0, -2.0, 0.0)

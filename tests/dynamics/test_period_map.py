@@ -11,9 +11,9 @@ from scipy.integrate import solve_ivp
 from benchmarks.orbits.known import case_of
 from gearmesh.dynamics.starts import coordinates
 from gearmesh.model.contact import CONTACT_LOSS
-from gearmesh.solvers.reduced import variational
-from gearmesh.solvers.reduced.period_map import passage
-from gearmesh.solvers.reduced.polynomials import first_root
+from gearmesh.solvers.reduced.derivatives import variational
+from gearmesh.solvers.reduced.derivatives.period_map import passage
+from gearmesh.solvers.reduced.derivatives.polynomials import first_root
 from gearmesh.solvers.simulation import simulate
 
 REST = (1.0, 0.0, -2.0, 0.0)

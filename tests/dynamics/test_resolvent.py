@@ -8,7 +8,7 @@ from resolvent import AT_END, Piece, solve, times_of
 from gearmesh.dynamics.periodic.orbits import find_orbit
 from gearmesh.model.contact import CONTACT_LOSS, INVERSE_MESH, NORMAL_MESH, regime_of
 from gearmesh.model.segments import segments
-from gearmesh.solvers.reduced.variational import (
+from gearmesh.solvers.reduced.derivatives.variational import (
     AFTER,
     CROSSING,
     HEIGHT,

@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 from gearmesh.data import paths
 from gearmesh.errors import InputError
 from gearmesh.study.frequencies import Frequencies, read_nu
-from gearmesh.study.schema import validate
+from gearmesh.study.reading.schema import validate
 
 
 def frequencies(**stated):

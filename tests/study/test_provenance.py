@@ -6,7 +6,7 @@ from hypothesis import strategies as st
 
 from gearmesh.errors import InputError
 from gearmesh.study.loading import load_study
-from gearmesh.study.provenance import GIVEN_KINDS, Statement, read_statement
+from gearmesh.study.reading.provenance import GIVEN_KINDS, Statement, read_statement
 
 
 def parameter(study, name):

@@ -4,7 +4,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from gearmesh.study.units import COMMON, factor_of, parse
+from gearmesh.study.reading.units import COMMON, factor_of, parse
 
 
 @pytest.mark.parametrize(

@@ -31,7 +31,7 @@ def _check_options(parser: argparse.ArgumentParser, arguments: Sequence[str]) ->
     for argument in arguments:
         option = argument.partition("=")[0]
         if option.startswith("--") and option not in (*known, "--"):
-            from gearmesh.study.schema import nearest
+            from gearmesh.study.reading.schema import nearest
 
             raise InputError(f"{option}: unknown option{nearest(option, known)}")
 

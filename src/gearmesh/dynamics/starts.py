@@ -9,7 +9,7 @@ from scipy.linalg import expm
 
 from gearmesh.model.motion import state_at
 from gearmesh.model.problem import Problem, State
-from gearmesh.solvers.reduced.period_map import segments_of
+from gearmesh.solvers.reduced.derivatives.period_map import segments_of
 from gearmesh.solvers.simulation import simulate
 
 _TRANSIENT = 40

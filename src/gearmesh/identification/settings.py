@@ -8,8 +8,8 @@ from typing import Literal, Self
 from pydantic import Field, field_validator, model_validator
 
 from gearmesh.identification.factors import FACTORS, KINDS
-from gearmesh.study import yamlfile
-from gearmesh.study.schema import Section, validate
+from gearmesh.study.reading import yamlfile
+from gearmesh.study.reading.schema import Section, validate
 
 
 class Range(Section):

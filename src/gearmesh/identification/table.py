@@ -8,7 +8,7 @@ import yaml
 from gearmesh.data.writing import write_text
 from gearmesh.errors import InputError
 from gearmesh.identification.layout import IDENTIFIED
-from gearmesh.study import yamlfile
+from gearmesh.study.reading import yamlfile
 
 HEADER = """\
 # The parameters that the paper does not print, inferred from its claims by the method of

@@ -14,9 +14,9 @@ from gearmesh.errors import InputError
 from gearmesh.interface.lengths import with_lengths
 from gearmesh.interface.orbits import Orbit
 from gearmesh.model.problem import Problem
-from gearmesh.study import units
 from gearmesh.study.alternatives import DECLARED
 from gearmesh.study.pair import Pair
+from gearmesh.study.reading import units
 
 Limits = tuple[object, object]
 """Ends of a range: numbers in the parameter's unit, or texts with units."""

@@ -5,7 +5,7 @@ from typing import Any
 
 from gearmesh.errors import InputError
 from gearmesh.model.involute import Involute
-from gearmesh.study import units
+from gearmesh.study.reading import units
 
 UM_PER_MM = 1000.0
 

@@ -9,9 +9,9 @@ import numpy as np
 
 from gearmesh.errors import InputError
 from gearmesh.model.variants import Variant, variant
-from gearmesh.study import units
 from gearmesh.study.loading import load_study
 from gearmesh.study.pair import Pair
+from gearmesh.study.reading import units
 from gearmesh.study.speeds import read_nu_or_speed
 
 Start = tuple[object, object]

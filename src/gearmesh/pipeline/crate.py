@@ -22,8 +22,8 @@ from gearmesh import __version__
 from gearmesh.data import manifest, provenance, writing
 from gearmesh.data.paths import Places
 from gearmesh.pipeline.inputs import CITATION, inputs
-from gearmesh.study import yamlfile
 from gearmesh.study.cases import Study
+from gearmesh.study.reading import yamlfile
 
 _WORKFLOW_CRATE = "https://w3id.org/workflowhub/workflow-ro-crate/1.0"
 PROFILES = (

@@ -5,8 +5,8 @@ from pathlib import Path
 
 from gearmesh.data import paths
 from gearmesh.identification import layout
-from gearmesh.study import yamlfile
 from gearmesh.study.cases import Study
+from gearmesh.study.reading import yamlfile
 
 SNAKEFILE = Path("Snakefile")
 CITATION = Path("CITATION.cff")

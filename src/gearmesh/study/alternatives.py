@@ -10,8 +10,8 @@ from typing import Any, NamedTuple
 
 from gearmesh.study.frequencies import read_nu
 from gearmesh.study.parameters import Parameters
+from gearmesh.study.reading.schema import Section, of_wheels, quantity
 from gearmesh.study.relative import MM_PER_M, read_parameter, stated_mean_stiffness
-from gearmesh.study.schema import Section, of_wheels, quantity
 
 KG_PER_N_S2_MM = 1000.0
 """1 N s²/mm = 1000 kg: it makes stiffnesses in N/mm and masses in kg consistent."""

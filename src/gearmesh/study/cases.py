@@ -13,7 +13,7 @@ from gearmesh.errors import InputError
 from gearmesh.model.variants import VARIANTS, Variant, variant
 from gearmesh.study.frequencies import MAX_CASES, Frequencies, Nu
 from gearmesh.study.pair import Pair
-from gearmesh.study.schema import Section, nearest, quantity
+from gearmesh.study.reading.schema import Section, nearest, quantity
 
 
 def _read_variant(value: object) -> str:

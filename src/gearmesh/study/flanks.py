@@ -4,7 +4,7 @@ import math
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
-from gearmesh.study.schema import of_wheels
+from gearmesh.study.reading.schema import of_wheels
 
 if TYPE_CHECKING:
     from gearmesh.study.parameters import Parameters

@@ -6,8 +6,8 @@ from typing import Annotated, Self
 
 from pydantic import BeforeValidator, Field, model_validator
 
-from gearmesh.study import units
-from gearmesh.study.schema import Section, quantity
+from gearmesh.study.reading import units
+from gearmesh.study.reading.schema import Section, quantity
 
 NU_DECIMALS = 10
 """Greatest number of decimals of a frequency."""

@@ -5,7 +5,7 @@ from typing import Literal, Self
 from pydantic import model_validator
 
 from gearmesh.model.functions import Harmonic
-from gearmesh.study.schema import Section, quantity
+from gearmesh.study.reading.schema import Section, quantity
 
 
 class _Wave(Section):

@@ -9,14 +9,14 @@ from collections.abc import Iterable, Mapping
 from pathlib import Path
 
 from gearmesh.errors import InputError
-from gearmesh.study import yamlfile
 from gearmesh.study.alternatives import NAMES, excluded_by
 from gearmesh.study.cases import Plan, Study
 from gearmesh.study.derived import FOLLOWING
 from gearmesh.study.frequencies import read_nu
 from gearmesh.study.pair import Pair
-from gearmesh.study.provenance import Statement, read_statement
-from gearmesh.study.schema import nearest, shown, validate
+from gearmesh.study.reading import yamlfile
+from gearmesh.study.reading.provenance import Statement, read_statement
+from gearmesh.study.reading.schema import nearest, shown, validate
 from gearmesh.study.speeds import as_nu
 
 _MAX_BASES = 8

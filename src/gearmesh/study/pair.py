@@ -25,7 +25,8 @@ from gearmesh.study.alternatives import (
 )
 from gearmesh.study.parameters import SETTINGS, Parameters
 from gearmesh.study.problem import problem_of
-from gearmesh.study.provenance import DEFAULT, DERIVED, SETTING, STATED, Statement
+from gearmesh.study.reading.provenance import DEFAULT, DERIVED, SETTING, STATED, Statement
+from gearmesh.study.reading.schema import of_wheels, read_declared, validate
 from gearmesh.study.relative import (
     LEVELS,
     MM_PER_M,
@@ -34,7 +35,6 @@ from gearmesh.study.relative import (
     resolved,
     with_levels,
 )
-from gearmesh.study.schema import of_wheels, read_declared, validate
 
 
 class Parameter(NamedTuple):

@@ -8,7 +8,7 @@ from pydantic import model_validator
 from gearmesh.study.flanks import check_flanks
 from gearmesh.study.frequencies import NU_MAX, NU_MIN
 from gearmesh.study.harmonics import BacklashHarmonic, ToothStiffness, TorqueHarmonic
-from gearmesh.study.schema import Section, quantity
+from gearmesh.study.reading.schema import Section, quantity
 
 SETTINGS = frozenset(
     {"initial_phase", "initial_displacement", "initial_velocity"}

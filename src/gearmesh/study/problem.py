@@ -10,8 +10,8 @@ from gearmesh.model.motion import state_at, state_of, static_equilibrium
 from gearmesh.model.problem import GeneralTerms, Problem, ToothFactor, Wheel
 from gearmesh.model.variants import Variant
 from gearmesh.study.flanks import flanks_of
+from gearmesh.study.reading.schema import of_wheels
 from gearmesh.study.relative import MM_PER_M
-from gearmesh.study.schema import of_wheels
 
 if TYPE_CHECKING:
     from gearmesh.study.pair import Pair

@@ -4,9 +4,9 @@ from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
 from gearmesh.model import stiffness
-from gearmesh.study import units
 from gearmesh.study.parameters import Parameters
-from gearmesh.study.schema import read_declared, shown
+from gearmesh.study.reading import units
+from gearmesh.study.reading.schema import read_declared, shown
 
 MM_PER_M = 1000.0
 

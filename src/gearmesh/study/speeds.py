@@ -3,9 +3,9 @@
 from collections.abc import Mapping
 
 from gearmesh.errors import InputError
-from gearmesh.study import units
 from gearmesh.study.frequencies import read_nu
 from gearmesh.study.pair import Pair
+from gearmesh.study.reading import units
 
 
 def is_speed(value: object) -> bool:

@@ -15,7 +15,7 @@ from scipy.linalg import expm
 
 from gearmesh.dynamics.starts import linear_rates
 from gearmesh.model.problem import Problem
-from gearmesh.solvers.reduced.period_map import segments_of
+from gearmesh.solvers.reduced.derivatives.period_map import segments_of
 
 RISE = 0.8
 """Contact losses vanish in the end if their margin rises to this share, or higher, while the time

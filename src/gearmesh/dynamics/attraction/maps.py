@@ -14,8 +14,8 @@ from gearmesh.dynamics.periodic.shots import Shot
 from gearmesh.dynamics.starts import initial_coordinates, initial_states
 from gearmesh.errors import NoOrbit
 from gearmesh.model.problem import Problem, State
+from gearmesh.solvers.reduced.derivatives.period_map import passage
 from gearmesh.solvers.reduced.ensembles import advance, advance_to_phase, laws_of
-from gearmesh.solvers.reduced.period_map import passage
 from gearmesh.solvers.reduced.runs import is_reducible
 
 WEIGHTS = np.array([1.0, 1.0, 0.01, 0.01])

@@ -16,11 +16,17 @@ from gearmesh.dynamics.periodic.orbits import Orbit
 from gearmesh.dynamics.periodic.shots import Shot
 from gearmesh.errors import NoOrbit
 from gearmesh.model.problem import Problem
-from gearmesh.solvers.reduced import curves
-from gearmesh.solvers.reduced.curves import LARGEST_RESIDUAL, ROUNDED, is_clear
-from gearmesh.solvers.reduced.deviations import SIZE
-from gearmesh.solvers.reduced.period_map import STATUSES, Statement, passage_of, statement, trace
-from gearmesh.solvers.reduced.variational import COMPLETE
+from gearmesh.solvers.reduced.derivatives import curves
+from gearmesh.solvers.reduced.derivatives.curves import LARGEST_RESIDUAL, ROUNDED, is_clear
+from gearmesh.solvers.reduced.derivatives.deviations import SIZE
+from gearmesh.solvers.reduced.derivatives.period_map import (
+    STATUSES,
+    Statement,
+    passage_of,
+    statement,
+    trace,
+)
+from gearmesh.solvers.reduced.derivatives.variational import COMPLETE
 
 Family = Callable[..., Problem]
 """The problem at the values of the parameters."""
@@ -49,8 +55,8 @@ class Point:
     made : callable
         Returns the orbit.
     found : tuple of two ndarray, optional
-        The row of `gearmesh.solvers.reduced.curves` and the events of the motion over the period,
-        if compiled code found it.
+        The row of `gearmesh.solvers.reduced.derivatives.curves` and the events of the motion over
+        the period, if compiled code found it.
     """
 
     place: np.ndarray

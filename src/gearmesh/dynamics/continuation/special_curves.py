@@ -20,7 +20,7 @@ from gearmesh.dynamics.continuation.special_points import (
 from gearmesh.dynamics.continuation.walks import LONGEST_STEP, joined, points_of, walk
 from gearmesh.dynamics.periodic.shots import Shot
 from gearmesh.errors import NoOrbit
-from gearmesh.solvers.reduced.variational import VELOCITY
+from gearmesh.solvers.reduced.derivatives.variational import VELOCITY
 
 
 @dataclass(frozen=True)

@@ -18,10 +18,10 @@ from gearmesh.dynamics.continuation.curves import Curve, Point
 from gearmesh.dynamics.periodic.shots import Shot
 from gearmesh.errors import NoOrbit
 from gearmesh.model.problem import Problem
-from gearmesh.solvers.reduced.curves import DAMPING, JACOBIAN, TANGENT
-from gearmesh.solvers.reduced.deviations import DEVIATIONS, SIZE
-from gearmesh.solvers.reduced.period_map import segments_of
-from gearmesh.solvers.reduced.variational import (
+from gearmesh.solvers.reduced.derivatives.curves import DAMPING, JACOBIAN, TANGENT
+from gearmesh.solvers.reduced.derivatives.deviations import DEVIATIONS, SIZE
+from gearmesh.solvers.reduced.derivatives.period_map import segments_of
+from gearmesh.solvers.reduced.derivatives.variational import (
     AFTER,
     BEFORE,
     CROSSING,

@@ -9,7 +9,7 @@ from scipy.optimize import brentq
 from gearmesh.dynamics.continuation.curves import Curve, Point, clear_phase
 from gearmesh.dynamics.continuation.special_points import flip_test
 from gearmesh.errors import NoOrbit
-from gearmesh.solvers.reduced.curves import FARTHEST
+from gearmesh.solvers.reduced.derivatives.curves import FARTHEST
 
 Limits = tuple[tuple[float, float], ...]
 """Range of each parameter."""
@@ -17,7 +17,7 @@ Limits = tuple[tuple[float, float], ...]
 LONGEST_STEP = 0.03
 """Longest step along a branch, in y_st and shares of the range of the parameter.
 
-It grows in proportion to motions of more than `gearmesh.solvers.reduced.curves.LARGE`.
+It grows in proportion to motions of more than `gearmesh.solvers.reduced.derivatives.curves.LARGE`.
 """
 
 MOST_POINTS = 4000
@@ -26,7 +26,7 @@ MOST_POINTS = 4000
 LIMIT, CLOSED, HALVED, FAR = "limit", "closed", "half the period", "far"
 """Ends of a branch: at a limit of the parameter; at its own first point; at a flip of an orbit of
 half the period, behind which the same orbits follow half a period later; at motions larger than
-`gearmesh.solvers.reduced.curves.FARTHEST`."""
+`gearmesh.solvers.reduced.derivatives.curves.FARTHEST`."""
 
 _FIRST_STEP = 0.25  # of the longest
 _AT_LIMIT = 1e-9  # share of the range of the parameter

@@ -15,7 +15,7 @@ from gearmesh.model.mesh import mesh_stiffness
 from gearmesh.model.problem import Problem
 from gearmesh.model.segments import segments
 from gearmesh.solvers.full.measures import Step
-from gearmesh.solvers.reduced.variational import (
+from gearmesh.solvers.reduced.derivatives.variational import (
     AFTER,
     BEFORE,
     EVENT_SIZE,

@@ -18,7 +18,7 @@ from gearmesh.errors import NoOrbit
 from gearmesh.model.motion import start
 from gearmesh.model.problem import Problem
 from gearmesh.solvers.full.coordinates import signs_act
-from gearmesh.solvers.reduced.curves import LARGEST_RESIDUAL
+from gearmesh.solvers.reduced.derivatives.curves import LARGEST_RESIDUAL
 
 _MOST_CORRECTIONS = 30
 _SHORTEST_CORRECTION = 1.0 / 64.0

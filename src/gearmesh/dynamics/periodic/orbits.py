@@ -2,7 +2,7 @@
 
 A period-n orbit is a fixed point of the n-th power of the stroboscopic map P, which takes the
 state (y, y', b, b') at the initial phase to the state one mesh period later. Newton's method on
-P^n(x) - x uses the exact Jacobian of `gearmesh.solvers.reduced.period_map`.
+P^n(x) - x uses the exact Jacobian of `gearmesh.solvers.reduced.derivatives.period_map`.
 """
 
 from dataclasses import dataclass, field, replace
@@ -15,8 +15,8 @@ from gearmesh.dynamics.starts import starts
 from gearmesh.errors import NoOrbit
 from gearmesh.model.contact import CONTACT_LOSS, INVERSE_MESH, regime_of
 from gearmesh.model.problem import Problem
-from gearmesh.solvers.reduced.curves import FARTHEST, LARGEST_RESIDUAL
-from gearmesh.solvers.reduced.period_map import (
+from gearmesh.solvers.reduced.derivatives.curves import FARTHEST, LARGEST_RESIDUAL
+from gearmesh.solvers.reduced.derivatives.period_map import (
     FIXED,
     LONGEST_ANGLE,
     Passage,
@@ -27,8 +27,7 @@ from gearmesh.solvers.reduced.period_map import (
     statement,
     trace,
 )
-from gearmesh.solvers.reduced.runs import is_reducible
-from gearmesh.solvers.reduced.variational import (
+from gearmesh.solvers.reduced.derivatives.variational import (
     AFTER,
     CROSSING,
     HEIGHT,
@@ -39,6 +38,7 @@ from gearmesh.solvers.reduced.variational import (
     TIME,
     TURN,
 )
+from gearmesh.solvers.reduced.runs import is_reducible
 
 _MOST_CORRECTIONS = 40
 # States closer than this count as the same, so an orbit that returns so early has a shorter period.

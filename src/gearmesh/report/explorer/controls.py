@@ -4,7 +4,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from gearmesh.study.pair import Pair
-from gearmesh.study.schema import of_wheels
+from gearmesh.study.reading.schema import of_wheels
 
 
 @dataclass(frozen=True, slots=True)

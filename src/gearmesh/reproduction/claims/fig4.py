@@ -8,7 +8,7 @@ from gearmesh.model.contact import NORMAL_MESH
 from gearmesh.reproduction.claims.evidence import Evidence
 from gearmesh.reproduction.claims.fig2 import LUBRICANT
 from gearmesh.reproduction.frequencies import FIG_4
-from gearmesh.study.schema import of_wheels
+from gearmesh.study.reading.schema import of_wheels
 
 if TYPE_CHECKING:
     import xarray as xr

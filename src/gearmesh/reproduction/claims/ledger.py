@@ -13,8 +13,8 @@ from pydantic_core import PydanticCustomError
 
 from gearmesh.data.writing import write_text
 from gearmesh.errors import InputError
-from gearmesh.study import yamlfile
-from gearmesh.study.schema import Section, shown, validate
+from gearmesh.study.reading import yamlfile
+from gearmesh.study.reading.schema import Section, shown, validate
 
 Status = Literal["reproduced", "deviates", "not_testable"]
 

@@ -17,7 +17,7 @@ from gearmesh.model.variants import variant
 from gearmesh.solvers.response import Response
 from gearmesh.solvers.simulation import simulate
 from gearmesh.study.pair import Pair
-from gearmesh.study.schema import of_wheels
+from gearmesh.study.reading.schema import of_wheels
 
 VARIANT = "c-lubricant"
 

@@ -4,10 +4,10 @@ The equations are those of `gearmesh.solvers.reduced.taylor`, with y = u + b, v 
 
     y'' = 1 + g E - (1 + 2 mu) N - 2 zeta w b' - w^2 b,    b'' = -2 mu N - 2 zeta w b' - w^2 b.
 
-The deviations of the motion (`gearmesh.solvers.reduced.deviations`) are carried along, so the
-Jacobian of the flow is as accurate as the flow. At a contact event the vector field changes at a
-time that depends on the state, so the deviations jump (`saltation`). C(t) and gamma(t) jump at
-fixed times, so the deviations stay continuous there.
+The deviations of the motion (`deviations`) are carried along, so the Jacobian of the flow is as
+accurate as the flow. At a contact event the vector field changes at a time that depends on the
+state, so the deviations jump (`saltation`). C(t) and gamma(t) jump at fixed times, so the
+deviations stay continuous there.
 """
 
 import numpy as np
@@ -25,7 +25,7 @@ from gearmesh.solvers.lanes.operations import (
     zeros8,
 )
 from gearmesh.solvers.lanes.rows import load, pointer_to, store, store_at
-from gearmesh.solvers.reduced.deviations import (
+from gearmesh.solvers.reduced.derivatives.deviations import (
     DEVIATIONS,
     N_ROWS,
     ORDER,
@@ -40,7 +40,11 @@ from gearmesh.solvers.reduced.deviations import (
     longest_step,
     motion_at,
 )
-from gearmesh.solvers.reduced.polynomials import first_root, root_between, value_and_slope
+from gearmesh.solvers.reduced.derivatives.polynomials import (
+    first_root,
+    root_between,
+    value_and_slope,
+)
 
 TURN, CROSSING, SWITCH = range(3)
 """Kinds of events: an extremum of y, a change of regime, a jump of C(t) or gamma(t)."""

@@ -11,8 +11,8 @@ from gearmesh.model.problem import Problem
 from gearmesh.model.segments import segments
 from gearmesh.solvers.compilation import persistent
 from gearmesh.solvers.limits import highest_frequency
-from gearmesh.solvers.reduced import curves, variational
-from gearmesh.solvers.reduced.deviations import DEVIATIONS, SIZE
+from gearmesh.solvers.reduced.derivatives import curves, variational
+from gearmesh.solvers.reduced.derivatives.deviations import DEVIATIONS, SIZE
 
 TOLERANCE = 1e-16
 """Bound of the last terms of a step, relative to the state: rounding decides the accuracy."""
@@ -21,10 +21,10 @@ LONGEST_ANGLE = 1.0
 """Bound of a step times the highest natural frequency."""
 
 STATUSES = ("complete", "too many steps", "too many events", "diverged")
-"""Outcomes of a passage, by their number in `gearmesh.solvers.reduced.variational`."""
+"""Outcomes of a passage, by their number in `gearmesh.solvers.reduced.derivatives.variational`."""
 
 Statement = tuple[np.ndarray, np.ndarray, float, np.ndarray, int, float, float, float]
-"""A problem and a number of mesh periods, as `gearmesh.solvers.reduced.curves.trace` takes them."""
+"""A problem and a number of mesh periods, as `curves.trace` takes them."""
 
 _EVENTS_PER_PERIOD = 64
 _NO_SAMPLES = np.empty((0, 4))
@@ -63,7 +63,7 @@ class Passage:
         Derivative of `end` with respect to the logarithm of the mesh period.
     events : ndarray, shape (n, variational.EVENT_SIZE)
         Extrema, changes of regime, and jumps of C(t) and gamma(t), with the columns of
-        `gearmesh.solvers.reduced.variational`; times from the start, in tau_s.
+        `gearmesh.solvers.reduced.derivatives.variational`; times from the start, in tau_s.
     damping : float
         Integral of the slope D of the damping law of the mesh.
     log_determinant : float
@@ -142,7 +142,7 @@ def trace(
     limits: tuple[float, float] = (0.0, 0.0),
     samples: np.ndarray = _NO_SAMPLES,
 ) -> tuple[np.ndarray, np.ndarray, float]:
-    """Return points, their events, and the next length, of `gearmesh.solvers.reduced.curves.trace`.
+    """Return points, their events, and the next length, of `curves.trace`.
 
     Parameters
     ----------

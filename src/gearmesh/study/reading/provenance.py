@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from gearmesh.errors import InputError
-from gearmesh.study.schema import nearest, shown
+from gearmesh.study.reading.schema import nearest, shown
 
 PRINTED, DERIVED, ASSUMED = "printed", "derived", "assumed"
 STATED, DEFAULT, SETTING = "stated", "default", "setting"

@@ -11,7 +11,7 @@ from typing import Any, ClassVar, NamedTuple, TypeVar, get_args, get_origin
 from pydantic import BaseModel, ConfigDict, Field, ValidationError, ValidationInfo, field_validator
 
 from gearmesh.errors import InputError
-from gearmesh.study import units
+from gearmesh.study.reading import units
 
 _SHOWN = 60  # characters of a wrong value that a message repeats
 _EXPECTED = {

@@ -1,11 +1,11 @@
 """Taylor series of a motion and of its deviations, within one branch of all laws.
 
-The equations are those of `gearmesh.solvers.reduced.variational`. The motion is in the first lane
-of a vector, and each of the next lanes holds a deviation (dy, dv, db, db') of the state. Deviations
-obey the linearised equations: c dy stands in place of E, c dy + D dv in place of N, and 0 in place
-of the constant 1, where D = k_1 + 2 k_2 |v| + 3 k_3 v^2. In the series of v^2 and v^3 the motion
-has the factors v v and v^2 v, a deviation v dv and v^2 dv. Both therefore obey one recurrence, in
-which the last factor is that of the lane, and the weights of a deviation are 2 and 3.
+The equations are those of `variational`. The motion is in the first lane of a vector, and each of
+the next lanes holds a deviation (dy, dv, db, db') of the state. Deviations obey the linearised
+equations: c dy stands in place of E, c dy + D dv in place of N, and 0 in place of the constant 1,
+where D = k_1 + 2 k_2 |v| + 3 k_3 v^2. In the series of v^2 and v^3 the motion has the factors v v
+and v^2 v, a deviation v dv and v^2 dv. Both therefore obey one recurrence, in which the last factor
+is that of the lane, and the weights of a deviation are 2 and 3.
 
 Five deviations are carried. Four belong to the coordinates of the state. The fifth is the
 derivative with respect to the logarithm of the mesh period, which stretches all segments. Within a

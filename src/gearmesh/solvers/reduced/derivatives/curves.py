@@ -7,8 +7,8 @@ place, the end of the motion over the period, the Jacobian, the tangent of the c
 import numpy as np
 
 from gearmesh.solvers.compilation import inner
-from gearmesh.solvers.reduced.deviations import DEVIATIONS, SIZE
-from gearmesh.solvers.reduced.variational import COMPLETE, HEIGHT, KIND, TURN, propagate
+from gearmesh.solvers.reduced.derivatives.deviations import DEVIATIONS, SIZE
+from gearmesh.solvers.reduced.derivatives.variational import COMPLETE, HEIGHT, KIND, TURN, propagate
 
 DIMENSIONS = SIZE + 1
 """Size of a place."""
