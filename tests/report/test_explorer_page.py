@@ -78,7 +78,8 @@ def test_orbits_are_those_of_the_study(datasets):
     branches = xr.Dataset({name: ("point", values) for name, values in columns.items()})
     row = {"variant": "d-both", "kind": "flip", "periods": 2, "nu": 0.75}
     row |= {"y_max_rel": 1.5, "y_min_rel": 0.0}
-    found = numbers.orbits(branches, [row, {**row, "parameters": {}}], ["c-material", "d-both"])
+    points = [row, {**row, "parameters": {}}, {**row, "periods": 5}]
+    found = numbers.orbits(branches, points, ["c-material", "d-both"])
     assert found["branch_variant"].tolist() == [0, 1]
     assert found["branch_stability"].tolist() == [1, -1]
     assert found["special_kind"].tolist() == [numbers.KINDS.index("flip")]

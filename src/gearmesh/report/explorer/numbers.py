@@ -10,6 +10,8 @@ import xarray as xr
 
 KINDS = (*("fold", "flip", "torus", "branch_point", "grazing_front", "grazing_back", "switching"),)
 """Kinds of special points; their places in this list stand for them."""
+MOST_PERIODS = 2
+"""The longest orbits, in mesh periods, whose special points the diagram marks."""
 
 MOST_BYTES = 3_500_000
 """Bytes of numbers in a page; a study with more keeps every second, third, … frequency."""
@@ -95,7 +97,8 @@ def orbits(
     branches : xarray.Dataset
         Over ``point``, one branch after the other.
     points : sequence of mapping
-        Special points; those with parameters of their own belong to another gear pair.
+        Special points. Left out are those with parameters of their own, which belong to another
+        gear pair, and those of longer periods than `MOST_PERIODS`, which would hide the diagram.
     variants : sequence of str
         Names of the variants, whose places stand for them.
 
@@ -108,7 +111,11 @@ def orbits(
     """
     known = np.isin(branches["variant"].values.astype(str), list(variants))
     branches = branches.isel(point=known)
-    rows = [row for row in points if "parameters" not in row and row["variant"] in variants]
+    rows = [
+        row
+        for row in points
+        if "parameters" not in row and row["variant"] in variants and row["periods"] <= MOST_PERIODS
+    ]
     place = {name: i for i, name in enumerate(variants)}
     return {
         "branch_variant": np.array([place[str(v)] for v in branches["variant"].values], "u2"),
