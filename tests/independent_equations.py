@@ -53,7 +53,7 @@ class Body:
 
 
 def _acceleration(problem: Problem) -> float:
-    """Return what nu gains in a unit of time if it changes linearly over the run."""
+    """Return the constant rate at which nu changes over the run."""
     periods = problem.revolutions * problem.teeth
     mean = 0.5 * (problem.nu + problem.final_nu)
     return (problem.final_nu - problem.nu) / (2.0 * pi * periods / mean)

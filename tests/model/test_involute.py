@@ -1,4 +1,4 @@
-"""Involute geometry and tooth stiffness, checked by construction and against ISO 6336."""
+"""Involute geometry against constructions by hand, and tooth stiffness against ISO 6336."""
 
 import math
 

@@ -67,17 +67,14 @@ def at(branch, nu):
         yield correct(replace(here.problem, nu=nu), state, branch.orbit.periods)
 
 
-def test_every_periodic_attractor_of_the_cases_is_on_a_branch(pair, found):
+def test_every_stable_orbit_that_a_case_approaches_is_on_a_branch(pair, found):
     """The exceptions are runs that are near no stable orbit of at most 12 periods in the end."""
-    cases = [pair.problem(variant(NAME), float(nu)) for nu in NUS]
-    runs = classify(cases)
-    periodic = [run.orbit for run in runs if run.attractor.kind == PERIODIC]
-    assert {orbit.periods for orbit in periodic} >= {3, 4, 5}
+    runs = classify([pair.problem(variant(NAME), float(nu)) for nu in NUS])
+    orbits = [run.orbit for run in runs if run.orbit is not None]
+    assert {orbit.periods for orbit in orbits} >= {3, 4, 5}
+    assert all(run.orbit is not None for run in runs if run.attractor.kind == PERIODIC)
     table = tables.table(NAME, found)
-    for orbit in periodic:
-        assert distance(table, orbit) < 5e-3
-    others = {run.attractor.kind for run in runs if run.orbit is None}
-    assert others <= {"moving", "quasi-periodic", "neutral", "chaotic"}
+    assert max(distance(table, orbit) for orbit in orbits) < 5e-3
 
 
 def test_an_orbit_on_a_branch_begins_no_other(found):

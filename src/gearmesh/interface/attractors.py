@@ -50,7 +50,7 @@ def attractors(
         By default the pair's own and a grid of 36.
     revolutions : int
         Revolutions of wheel 3 after which a motion that has not settled is classified as it is.
-        They are rounded up until the excitation repeats.
+        They are rounded up to whole periods of the excitation.
 
     Returns
     -------

@@ -43,10 +43,10 @@ def lyapunov_spectrum(
     start : tuple, optional
         Initial condition (y, dy/dτ_s), as for `simulate`; by default that of the pair.
     periods : int
-        Mesh periods over which growth is measured, at least 8. Both numbers are rounded up until
-        the excitation repeats.
+        Mesh periods over which growth is measured, at least 8.
     transient : int
-        Mesh periods before.
+        Mesh periods that the run takes before growth is measured. Both numbers are rounded up to
+        whole periods of the excitation.
 
     Returns
     -------

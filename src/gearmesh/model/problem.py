@@ -237,6 +237,21 @@ class Problem:
         )
         return wheel, wheel
 
+    def over_periods(self, periods: int, kept: int, begun: "State | None") -> "Problem":
+        """Return a run of the same pair that lasts whole mesh periods, not whole revolutions.
+
+        The last `kept` mesh periods are kept, and the run starts from `begun`. A revolution of one
+        tooth is one mesh period; both wheels keep their own teeth.
+        """
+        return replace(
+            self,
+            wheels=self.both_wheels,
+            teeth=1,
+            revolutions=periods,
+            kept_revolutions=kept,
+            initial_state=begun,
+        )
+
     @property
     def period(self) -> float:
         """Mesh period T in tau_s."""

@@ -25,8 +25,8 @@ closed curve; chaos; a motion that still changes after the transient; a run that
 SAME = 1e-6
 """Distance, in y_st, of two numbers that are the same."""
 
-_MOST_PERIODS = 12  # of an orbit that is searched for,
-_MOST_STEPS = 4  # or so many steps of the map if each takes several mesh periods
+_MOST_PERIODS = 12  # longest orbit that is searched for, in mesh periods
+_MOST_STEPS = 4  # the same in steps of the map, where a step takes several mesh periods
 _NEAR = 0.1  # distance after n periods, in y_st, of a state that may be close to an orbit
 _AS_CLOSE = 2.0
 

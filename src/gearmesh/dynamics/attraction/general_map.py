@@ -156,15 +156,10 @@ class GeneralMap:
 
     def runs(self, states: np.ndarray, periods: int) -> list[Problem]:
         """Return runs from states."""
-        return [
-            replace(
-                with_moments(self.problem, self._chart.moments(self.problem, state, self.block)),
-                wheels=self.problem.both_wheels,
-                teeth=1,
-                revolutions=whole,
-                kept_revolutions=whole,
-                initial_state=state_at_place(self.problem, place),
-            )
-            for whole in (self.block * math.ceil(periods / self.block),)
-            for state, place in zip(states, self._places(states), strict=True)
-        ]
+        whole = self.block * math.ceil(periods / self.block)
+        found = []
+        for state, place in zip(states, self._places(states), strict=True):
+            moments = self._chart.moments(self.problem, state, self.block)
+            held = with_moments(self.problem, moments)
+            found.append(held.over_periods(whole, whole, state_at_place(self.problem, place)))
+        return found

@@ -57,7 +57,7 @@ class PoincareMap(Protocol):
         """
 
     def advance(self, states: np.ndarray, steps: int) -> np.ndarray:
-        """Return states of shape (n, k) after some steps, not-a-number where a run fails."""
+        """Move states, shape (n, k), ahead by some steps. A run that fails gives not-a-number."""
 
     def step(self, state: np.ndarray) -> tuple[np.ndarray, list[np.ndarray]]:
         """Return the state after a step, and factors of the Jacobian of the coordinates.

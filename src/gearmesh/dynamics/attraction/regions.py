@@ -20,8 +20,8 @@ from gearmesh.dynamics.periodic.shots import Shot
 _SIZES = (1e-5, 1e-4, 1e-3, 0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1.0)
 """Sizes that are tried, in y_st."""
 
-_DIRECTIONS = 64  # motions that try a size, from each point of the orbit,
-_FEWEST = 16  # or fewer where a step of the map takes several mesh periods
+_DIRECTIONS = 64  # motions that try a size, from each point of the orbit
+_FEWEST = 16  # the least number of them, where a step of the map takes several mesh periods
 _FALL = 0.7  # of the size, in the time over which it is tried
 _MOST_PERIODS = 2000
 _LEAST_RHO = 0.1
@@ -54,7 +54,7 @@ class Region:
         return np.asarray(np.min(away, axis=0))
 
     def holds(self, places: np.ndarray) -> np.ndarray:
-        """Return which places of shape (r, m) are in the region, shape (r,)."""
+        """Return whether each place is in the region: shape (r, m) gives shape (r,)."""
         return self.distances(places) < self.size
 
 

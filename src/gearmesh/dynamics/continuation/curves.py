@@ -235,10 +235,11 @@ class Curve:
         return other, other.point(np.append(here, point.place[here.size :]), along, along)
 
     def between(self, left: Point, right: Point, normal: np.ndarray, share: float) -> Point:
-        """Return the point of the curve at a share of the distance between two others.
+        """Return a point of the curve between two known points.
 
-        The distance is measured along `normal`, with which both tangents make a small angle. The
-        cubic polynomial through both points with their tangents predicts the place.
+        `share` says how far it is from `left` to `right`, from 0 to 1. Distances are measured along
+        `normal`, which must be close to both tangents. A cubic polynomial through both points, with
+        their tangents, predicts the new point.
         """
         length = float(normal @ (right.place - left.place))
         ahead, behind = (length / (one.tangent @ normal) * one.tangent for one in (left, right))

@@ -54,7 +54,7 @@ class Chart:
 
     @property
     def kept(self) -> np.ndarray:
-        """Where the numbers of a place stand that multipliers describe."""
+        """Indices of those numbers of a place that multipliers describe."""
         left_out = {ABSENT: [], FREE: [0], HELD: [0, self.n]}[self.rotation]
         return np.delete(np.arange(2 * self.n), left_out)
 

@@ -5,7 +5,7 @@ from collections.abc import Callable
 import numpy as np
 
 LARGEST_STEP = 1e-3
-"""The step where nothing is near at which the map has a kink."""
+"""The step where the map has no kink nearby."""
 
 _SHARES = (1.0, 0.1, 0.01, 0.001)
 _SMOOTH = 1e-8  # difference between orders without a kink

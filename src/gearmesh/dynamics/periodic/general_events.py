@@ -32,9 +32,10 @@ _SAME = 1e-12  # difference of stiffnesses that are equal but for rounding
 
 
 def stiffness_jumps(problem: Problem, steps: Sequence[Step]) -> np.ndarray:
-    """Return the events at which C(t) jumps, with the columns of `solvers.reduced.variational`.
+    """Return the events at which C(t) jumps.
 
-    The column of the regime is not filled in. A jump at the initial phase is the last event.
+    Their columns are those of `gearmesh.solvers.reduced.derivatives.variational`; that of the
+    regime is not filled in. A jump at the initial phase is the last event.
     """
     parts = segments(problem)
     middles = [problem.initial_phase + 0.5 * (part.start + part.end) for part in parts]

@@ -114,7 +114,7 @@ class GeneralOrbit:
 
     @property
     def strobes(self) -> np.ndarray:
-        """Y and y' at the initial phase of each mesh period, shape (periods, 2)."""
+        """Stroboscopic points: y and y' at the start of each mesh period, shape (periods, 2)."""
         return np.column_stack([self.response.strobe_y, self.response.strobe_v])[:-1]
 
     @property
@@ -147,7 +147,7 @@ class GeneralOrbit:
 
     @property
     def _run(self) -> Problem:
-        return _run(self.held, self.initial_state, self.periods)
+        return self.held.over_periods(self.periods, 0, self.initial_state)
 
     @cached_property
     def _steps(self) -> list[Step]:
@@ -224,7 +224,7 @@ class GeneralOrbit:
     def factors(self) -> list[np.ndarray]:
         """Jacobians of the mesh periods; `monodromy` is the product of them, the last one first.
 
-        The first and the last one are without the mean rotation at the start and at the end.
+        The first one leaves out the mean rotation at the start, and the last one that at the end.
         """
         found, place, motions = [], self.start, ends(self.held, self.periods)
         for n in range(self.periods):
@@ -363,21 +363,5 @@ def moved_to_phase(problem: Problem, place: np.ndarray, phase: float) -> np.ndar
 
 def run_of(problem: Problem, begun: State, periods: int, samples_per_period: int) -> Response:
     """Integrate whole mesh periods; they are kept if samples are wanted."""
-    run = _run(problem, begun, periods)
-    if samples_per_period:
-        run = replace(run, kept_revolutions=periods)
+    run = problem.over_periods(periods, periods if samples_per_period else 0, begun)
     return integrate(run, _TOLERANCE, samples_per_period, estimate_errors=False)
-
-
-def _run(problem: Problem, begun: State, periods: int) -> Problem:
-    """Return the problem of a run over whole mesh periods, none of which is kept."""
-    # A run takes whole revolutions: with a "revolution" of one period it takes any number of
-    # mesh periods. The wheels keep their teeth.
-    return replace(
-        problem,
-        wheels=problem.both_wheels,
-        teeth=1,
-        revolutions=periods,
-        kept_revolutions=0,
-        initial_state=begun,
-    )

@@ -79,7 +79,7 @@ def correct(orbit: GeneralOrbit) -> GeneralOrbit:
         while share >= shortest:
             try:
                 candidate = orbit.shot(problem, orbit.state + share * correction, periods)
-            except NoOrbit:  # the motion runs away; it may not from a state nearer by
+            except NoOrbit:  # the motion runs away; from a nearer state it may not
                 share *= 0.5
                 continue
             if candidate.residual < (1.0 - 0.1 * share) * orbit.residual:

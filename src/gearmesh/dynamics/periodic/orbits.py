@@ -137,7 +137,7 @@ class Orbit:
 
     @property
     def strobes(self) -> np.ndarray:
-        """Y and y' at the initial phase of each mesh period, shape (periods, 2)."""
+        """Stroboscopic points: y and y' at the start of each mesh period, shape (periods, 2)."""
         return self.points[:, :2]
 
     @property

@@ -77,7 +77,7 @@ class Shot(Protocol):
 
     @property
     def stiffness_jumps(self) -> np.ndarray:
-        """Events at which C(t) jumps, with the columns of `solvers.reduced.variational`."""
+        """Events at which C(t) jumps, with the columns of `reduced.derivatives.variational`."""
 
     @property
     def y_max(self) -> float:
@@ -97,7 +97,7 @@ class Shot(Protocol):
 
     @property
     def strobes(self) -> np.ndarray:
-        """Y and y' at the initial phase of each mesh period, shape (periods, 2)."""
+        """Stroboscopic points: y and y' at the start of each mesh period, shape (periods, 2)."""
 
     @property
     def residual(self) -> float:

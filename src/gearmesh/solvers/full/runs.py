@@ -129,17 +129,7 @@ class Propagation:
     def __init__(
         self, problem: Problem, periods: int, tolerance: float, share: float = 1.0
     ) -> None:
-        # A run lasts a whole number of revolutions. With teeth = 1 a "revolution" is one mesh
-        # period, so a run can last any number of periods. The wheels keep their real teeth.
-        run = replace(
-            problem,
-            wheels=problem.both_wheels,
-            teeth=1,
-            revolutions=periods,
-            kept_revolutions=0,
-            initial_state=None,
-        )
-        self._run = _Run(run, False, share)
+        self._run = _Run(problem.over_periods(periods, 0, None), False, share)
         self._tolerance = tolerance
 
     def end(self, six: np.ndarray, first: int = 0, last: int | None = None) -> np.ndarray:
