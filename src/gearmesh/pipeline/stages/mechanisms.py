@@ -16,7 +16,11 @@ def orbits(study: Study, places: Places, letter: str) -> list[Path]:
 
     from gearmesh.data.writing import write_text
     from gearmesh.reproduction.mechanisms import files, tables
-    from gearmesh.reproduction.mechanisms.attractors import all_branches, reached
+    from gearmesh.reproduction.mechanisms.attractors import (
+        all_branches,
+        carried_over,
+        reached,
+    )
     from gearmesh.reproduction.mechanisms.orbits import WITHOUT_SUPPORTS
 
     names = _mechanisms(study).by_letter[letter]
@@ -25,7 +29,7 @@ def orbits(study: Study, places: Places, letter: str) -> list[Path]:
     made, rows = [], []
     for name in names:
         found = all_branches(study.pair, name, limits, reached(study.pair, name, study.nu))
-        again = all_branches(simpler, name, limits, ends=[])
+        again = all_branches(simpler, name, limits, carried_over(found, simpler))
         made += [tables.table(name, found)] if found else []
         rows += tables.rows(name, found, {})
         rows += tables.rows(name, again, WITHOUT_SUPPORTS)
