@@ -17,6 +17,7 @@ from gearmesh.dynamics.periodic.general_orbits import shot_from
 from gearmesh.errors import NoOrbit
 from gearmesh.model.functions import Harmonic
 from gearmesh.model.problem import GeneralTerms, State
+from gearmesh.model.variants import variant
 from gearmesh.solvers.reduced.derivatives.variational import VELOCITY
 
 LIMITS = (0.3845, 0.3862)
@@ -65,6 +66,14 @@ def test_switching_points_are_the_exact_ones(name):
     exact, found = (special(one, (0.64, 0.67)) for one in (orbit, in_general(orbit)))
     assert [kind for kind, _ in exact] == [kind for kind, _ in found] == ["switching"]
     np.testing.assert_allclose([nu for _, nu in found], [nu for _, nu in exact], atol=1e-10)
+
+
+def test_a_grazing_behind_which_nothing_damps_is_no_torus(pair):
+    """Multipliers by differences are rough there, and contact leaves a pair on the unit circle."""
+    orbit = orbits.find_orbit(pair.problem(variant("d-lubricant"), 1.12))
+    for one in (orbit, in_general(orbit)):
+        found = branches.follow(one, "nu", (1.1, 1.15)).special
+        assert [point.kind for point in found] == ["grazing_front"]
 
 
 def test_switching_points_of_two_wheels_have_a_turning_point_at_a_jump_of_the_stiffness():

@@ -90,7 +90,7 @@ def special_points(
     beside = cache(curve.beside)
     tests = [test for test in _event_tests(left, right) if test[0] in kinds]
     events = _once(search(curve, left, right, tests, beside))
-    tests = [test for test in _bifurcation_tests() if events or test[0] in kinds]
+    tests = [test for test in bifurcation_tests() if events or test[0] in kinds]
     ends = [left, *(point for _, point in events), right]
     bifurcations = [
         found
@@ -219,7 +219,8 @@ def _confirmed(
     if kind == "fold":
         return min(abs(left.slope), abs(right.slope)) > _LEAST_SLOPE
     if kind == "torus":
-        return _has_pair_on_the_unit_circle(point.orbit)
+        sides = left.orbit, right.orbit
+        return _has_pair_on_the_unit_circle(point.orbit) and all(map(_is_off_the_circle, sides))
     if kind == "switching":
         return _turns_at_a_switch(point.orbit)
     if kind == "branch_point":
@@ -239,11 +240,22 @@ def _turns_at_a_switch(orbit: Shot) -> bool:
 
 def _has_pair_on_the_unit_circle(orbit: Shot) -> bool:
     """Return whether the multipliers with the product 1 are a complex pair, not two real ones."""
-    products = [(abs(a * b - 1.0), a) for a, b in combinations(orbit.multipliers, 2)]
-    return bool(abs(min(products, key=lambda item: item[0])[1].imag) > 1e-6)
+    return bool(abs(_nearest_to_the_circle(orbit)[1].imag) > 1e-6)
 
 
-def _bifurcation_tests() -> list[Test]:
+def _is_off_the_circle(orbit: Shot) -> bool:
+    """Return whether no product of two multipliers is 1 within their error, as at a grazing."""
+    return _nearest_to_the_circle(orbit)[0] > orbit.multiplier_error
+
+
+def _nearest_to_the_circle(orbit: Shot) -> tuple[float, complex]:
+    """Return the least |mu_i mu_k - 1|, and mu_i."""
+    products = [(float(abs(a * b - 1.0)), a) for a, b in combinations(orbit.multipliers, 2)]
+    return min(products, key=operator.itemgetter(0))
+
+
+def bifurcation_tests() -> list[Test]:
+    """Return the tests of all bifurcations, in the order of `BIFURCATIONS`."""
     return [
         ("fold", lambda point: point.slope),
         ("branch_point", lambda point: point.determinant),
