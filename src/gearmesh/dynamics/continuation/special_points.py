@@ -291,9 +291,22 @@ def torus_test(orbit: Shot) -> float:
     Without damping in the mesh a pair may be there all along the branch; the result is then
     not-a-number.
     """
-    if orbit.undamped:
-        return float("nan")
-    return float(np.prod([a * b - 1.0 for a, b in combinations(orbit.multipliers, 2)]).real)
+    return float("nan") if orbit.undamped else float(product_of_pairs(orbit.monodromy))
+
+
+def product_of_pairs(matrices: np.ndarray) -> np.ndarray:
+    """Return the product of all mu_i mu_k - 1, i < k, of the eigenvalues mu of each matrix.
+
+    The products mu_i mu_k are the eigenvalues of the second compound matrix, of the minors of
+    order two.
+    """
+    i, k = np.triu_indices(matrices.shape[-1], 1)
+    rows, others = i[:, None], k[:, None]
+    compound = (
+        matrices[..., rows, i] * matrices[..., others, k]
+        - matrices[..., rows, k] * matrices[..., others, i]
+    )
+    return np.linalg.det(compound - np.eye(i.size))
 
 
 def _height(extrema: Extrema, phase: float, kind: float) -> Callable[[Point], float]:

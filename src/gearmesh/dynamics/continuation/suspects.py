@@ -14,6 +14,7 @@ from gearmesh.dynamics.continuation.special_points import (
     FRONT,
     GRAZINGS,
     bifurcation_tests,
+    product_of_pairs,
 )
 from gearmesh.dynamics.periodic.shots import Shot
 from gearmesh.model.problem import Problem
@@ -132,21 +133,5 @@ def _of_rows(points: list[Point], rows: np.ndarray) -> list[np.ndarray]:
         np.array([point.slope for point in points]),
         np.array([point.determinant for point in points]),
         np.linalg.det(jacobians + np.eye(SIZE)),
-        np.where(rows[:, DAMPING] != 0.0, _pair_products(jacobians), np.nan),
+        np.where(rows[:, DAMPING] != 0.0, product_of_pairs(jacobians), np.nan),
     ]
-
-
-def _pair_products(jacobians: np.ndarray) -> np.ndarray:
-    """Return the products of all mu_i mu_k - 1, from the characteristic polynomials.
-
-    The sums mu_1 mu_2 + mu_3 mu_4, ... are the roots of the resolvent cubic of the polynomial.
-    """
-    square = jacobians @ jacobians
-    one, two = (np.einsum("kii->k", power) for power in (jacobians, square))
-    three = np.einsum("kij,kji->k", square, jacobians)
-    e_2 = (one**2 - two) / 2.0
-    e_3 = (one**3 - 3.0 * one * two + 2.0 * three) / 6.0
-    e_4 = np.linalg.det(jacobians)
-    s = 1.0 + e_4
-    cubic = s**3 - e_2 * s**2 + (one * e_3 - 4.0 * e_4) * s
-    return cubic - (one**2 * e_4 + e_3**2 - 4.0 * e_2 * e_4)
