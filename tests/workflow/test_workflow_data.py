@@ -3,6 +3,7 @@
 import os
 import re
 import shutil
+import signal
 from pathlib import Path
 from subprocess import CompletedProcess
 
@@ -203,12 +204,21 @@ def test_a_study_whose_file_has_an_odd_name_needs_a_name(tiny, copied):
     assert copied.results() == tiny.results()
 
 
-def test_a_study_without_case_files_gives_the_same_datasets(tiny, tmp_path):
+def test_a_killed_study_without_case_files_goes_on_and_gives_the_same_datasets(tiny, tmp_path):
+    """As the atlas, whose cases are in its batches only."""
     fresh = Project.create(tmp_path / "fresh", "config/tiny.yaml")
     fresh.edit("config/tiny.yaml", "title:", "case_files: false\ntitle:")
-    assert counts(fresh) == (14, 0)
-    for name in ("datasets/resonance.nc", DATASET, "batches/a.nc"):
+    run = fresh.start("data", options=("--cores", "1"))
+    run.wait_for(lambda: len([*(fresh.study / "logs").glob("cases-*")]) == 2)  # one is finished
+    run.send(signal.SIGKILL)
+    run.wait()
+    [kept] = (fresh.study / "manifests").glob("cases-*")
+    written = kept.stat().st_mtime_ns
+    assert counts(fresh) == ({"cases-a": 10, "cases-c": 4}[kept.stem], 0)
+    assert kept.stat().st_mtime_ns == written
+    for name in ("datasets/resonance.nc", DATASET, "batches/a.nc", "batches/c.nc"):
         assert fresh.results()[name] == tiny.results()[name]
     assert not [name for name in fresh.results() if name.startswith("cases/")]
     (fresh.study / "batches" / "c.nc").unlink()
-    assert counts(fresh) == (10, 0)
+    assert counted(fresh.run("results/tiny/batches/c.nc")) == (10, 0)
+    assert fresh.plan("data") == set()
