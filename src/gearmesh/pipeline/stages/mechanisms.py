@@ -15,7 +15,11 @@ def branches(study: Study, places: Places) -> list[Path]:
 
     from gearmesh.data.writing import write_text
     from gearmesh.reproduction.mechanisms import files, tables
-    from gearmesh.reproduction.mechanisms.attractors import all_branches, reached
+    from gearmesh.reproduction.mechanisms.attractors import (
+        all_branches,
+        carried_over,
+        reached,
+    )
     from gearmesh.reproduction.mechanisms.orbits import WITHOUT_SUPPORTS
 
     limits = float(study.nu[0]), float(study.nu[-1])
@@ -23,7 +27,7 @@ def branches(study: Study, places: Places) -> list[Path]:
     made, rows, rows_without = [], [], []
     for name in _mechanisms(study).variants:
         found = all_branches(study.pair, name, limits, reached(study.pair, name, study.nu))
-        again = all_branches(simpler, name, limits, ends=[])
+        again = all_branches(simpler, name, limits, carried_over(found, simpler))
         made += [tables.table(name, found)] if found else []
         rows += tables.rows(name, found, {})
         rows_without += tables.rows(name, again, WITHOUT_SUPPORTS)
