@@ -134,8 +134,7 @@ def follow(orbit: Orbit, parameter: str, limits: Limits) -> Branch:
     Branch
         Orbits along the branch, and its special points, located to 1e-8 in the parameter. If the
         pair has terms that only the general solver knows, a `torus` point closer than 1e-6 to a
-        grazing is located only to 1e-7. If the backlash varies and the damping jumps at the back
-        flanks, a `grazing_back` point may be left out.
+        grazing is located only to 1e-7.
 
     Raises
     ------

@@ -7,7 +7,8 @@ from functools import cached_property, partial
 import numpy as np
 
 from gearmesh.dynamics.continuation.curves import Curve, Family, Point, clear_phase, stretches
-from gearmesh.dynamics.continuation.special_points import SpecialPoint, special_points, suspects
+from gearmesh.dynamics.continuation.special_points import SpecialPoint, special_points
+from gearmesh.dynamics.continuation.suspects import suspects
 from gearmesh.dynamics.continuation.walks import LONGEST_STEP, Piece, joined, points_of, walk
 from gearmesh.dynamics.periodic.shots import Shot
 from gearmesh.errors import NoOrbit

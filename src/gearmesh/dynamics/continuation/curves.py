@@ -32,6 +32,7 @@ Family = Callable[..., Problem]
 """The problem at the values of the parameters."""
 
 _MOST_CORRECTIONS = 12
+_CONTRACTION = 0.01  # of the defect: gradients that reduce it so far are used again
 _DIFFERENCE = 1e-5
 _PLACES = 64
 _MOST_STEPS = 64  # in one call of the compiled code
@@ -144,13 +145,15 @@ class Curve:
         gradients = self._gradients(place, orbit, rough=True)
         for _ in range(_MOST_CORRECTIONS):
             defect = self._defect(orbit)
-            if not np.abs(defect).max() < best:
+            size = float(np.abs(defect).max())
+            if not size < best:
                 break
-            best = float(np.abs(defect).max())
-            found, found_orbit = place, orbit
+            known = size < _CONTRACTION * best < np.inf
+            found, found_orbit, best = place, orbit, size
             if best < ROUNDED:
                 break
-            self._differentiate(orbit, gradients)
+            if not known:
+                self._differentiate(orbit, gradients)
             try:
                 correction = np.linalg.solve(
                     np.vstack([gradients, normal]), np.append(defect, normal @ (place - origin))

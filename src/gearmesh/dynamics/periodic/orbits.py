@@ -176,6 +176,11 @@ class Orbit:
         return sorted_multipliers(np.linalg.eigvals(self.monodromy))
 
     @property
+    def multiplier_error(self) -> float:
+        """Estimated error of the multipliers, as of `certificate`."""
+        return self.certificate.multiplier_error
+
+    @property
     def growth(self) -> float:
         """Logarithm of the greatest growth of a deviation in a mesh period."""
         return float(np.log(np.abs(self.multipliers[0]))) / self.periods
