@@ -20,8 +20,10 @@ PIP := $(BIN)/python -I -m pip install --quiet --disable-pip-version-check
 # Nothing without a hash is ever installed, so the few packages that come as sources are built
 # with the setuptools of the lock instead of one that pip would fetch for the purpose.
 # The lock is complete, so pip need not resolve: it would also stumble over extras in hash mode.
-# pip compiles all modules: where PYTHONDONTWRITEBYTECODE is set, each process would do it again.
-LOCKED := $(PIP) --require-hashes --no-deps --no-build-isolation
+LOCKED := $(PIP) --require-hashes --no-deps --no-build-isolation --no-compile
+# Where PYTHONDONTWRITEBYTECODE is set, each process would compile all modules for itself, so they
+# are compiled here: on all cores, and without the tests that packages ship, half of the work.
+COMPILE := $(BIN)/python -I -W ignore -m compileall -qq -j 0 -x '/tests?/' .venv/lib || true
 SNAKEMAKE := $(BIN)/python -I -m snakemake $(if $(CORES),--cores $(CORES))
 UV_COMPILE := uv pip compile --quiet --universal --python-version 3.11 --fork-strategy fewest \
 	--generate-hashes --no-annotate --no-header --no-emit-index-url
@@ -95,14 +97,16 @@ $(STAMP): $(if $(STALE),always)
 	@$(PYTHON) -I -c 'import sys; sys.version_info >= (3, 11) or sys.exit("Python 3.11 or later is \
 	needed, this is " + sys.version.split()[0] + "; try make PYTHON=python3.12")'
 	@$(PYTHON) -I -m venv --clear .venv
-	@sed -n '/^setuptools==/,/[^\\]$$/p' requirements.lock >.venv/first.txt
+	@sed -nE '/^(pip|setuptools)==/,/[^\\]$$/p' requirements.lock >.venv/first.txt
 	@$(LOCKED) -r .venv/first.txt
 	@$(LOCKED) -r requirements.lock
 	@$(PIP) --no-index --no-deps --no-build-isolation --editable .
+	@$(COMPILE)
 	@sh .ci/stale_environment --state >$@
 
 $(DEV_STAMP) $(DOCS_STAMP): .venv/.installed-%: $(STAMP) requirements-%.lock
 	@$(LOCKED) -r requirements-$*.lock
+	@$(COMPILE)
 	@touch $@
 
 # numbalsoda is built from source by tools that this lock names too: they come first. Where it
@@ -110,6 +114,7 @@ $(DEV_STAMP) $(DOCS_STAMP): .venv/.installed-%: $(STAMP) requirements-%.lock
 $(BENCH_STAMP): $(STAMP) requirements-bench.lock
 	@sed '/^numbalsoda==/,/[^\\]$$/d' requirements-bench.lock >.venv/first.txt
 	@$(LOCKED) -r .venv/first.txt
+	@$(COMPILE)
 	@if PATH="$(CURDIR)/$(BIN):$$PATH" $(LOCKED) -r requirements-bench.lock >.venv/numbalsoda.log 2>&1; \
 	then touch $@; \
 	else echo "numbalsoda is left out, because it needs a Fortran and a C++ compiler: see .venv/numbalsoda.log"; fi

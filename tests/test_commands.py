@@ -5,6 +5,7 @@ import resource
 import shutil
 import subprocess
 import sys
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -33,7 +34,7 @@ def process(root):
 
     def run(*arguments, cwd=root, **environment):
         return subprocess.run(
-            [sys.executable, "-m", "gearmesh", *map(str, arguments)],
+            [Path(sys.executable).with_name("gearmesh"), *map(str, arguments)],
             cwd=cwd,
             env=os.environ | environment,
             capture_output=True,

@@ -16,7 +16,6 @@ from pathlib import Path
 import numpy as np
 import pytest
 from project import Project
-from snakemake_process import Run
 
 from gearmesh.data.datasets import open_dataset
 
@@ -231,7 +230,7 @@ def test_it_runs_without_a_home_and_where_there_are_no_locks_one_line_warns(brie
     ],
 )
 def test_unknown_or_several_studies_are_refused_in_one_line(fresh, options):
-    finished = Run(fresh.folder, fresh.environment, options).wait()
+    finished = fresh.start_python("-m", "snakemake", *options).wait()
     assert finished.returncode == 2
     lines = [line for line in finished.stdout.splitlines() if "gearmesh: error" in line]
     assert len(lines) == 1, finished.stdout

@@ -12,8 +12,6 @@ from functools import cache
 from itertools import combinations, pairwise
 
 import numpy as np
-from scipy.interpolate import barycentric_interpolate
-from scipy.optimize import brentq
 
 from gearmesh.dynamics.continuation.curves import Curve, Point
 from gearmesh.dynamics.periodic.shots import Shot
@@ -170,6 +168,8 @@ def _locate(curve: Curve, left: Point, right: Point, test: Callable[[Point], flo
 
     Each point is predicted from the two nearest ones that are known.
     """
+    from scipy.optimize import brentq  # here, because it takes long to import
+
     known = {0.0: left, 1.0: right}
 
     def at(share: float) -> Point:
@@ -205,7 +205,9 @@ def _approach(curve: Curve, left: Point, right: Point, test: Callable[[Point], f
             continue
         free = point
         heights, distances = [*heights[-2:], height], [*distances[-2:], distances[-1] + length]
-        length = _SHARE * float(barycentric_interpolate(heights, distances, 0.0) - distances[-1])
+        # A parabola gives the distance as a function of the height.
+        parabola = np.linalg.solve(np.vander(np.array(heights) / height), distances)
+        length = _SHARE * float(parabola[-1] - distances[-1])
     return free
 
 

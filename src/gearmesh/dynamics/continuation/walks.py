@@ -4,7 +4,6 @@ from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 import numpy as np
-from scipy.optimize import brentq
 
 from gearmesh.dynamics.continuation.curves import Curve, Point, clear_phase
 from gearmesh.dynamics.continuation.special_points import flip_test
@@ -132,6 +131,8 @@ def _half_way(point: Point) -> np.ndarray:
 
 def _flip_at_end(curve: Curve, point: Point) -> list[tuple[str, Point]]:
     """Return the flip of an orbit of half the period near a point, if there is one."""
+    from scipy.optimize import brentq  # here, because it takes long to import
+
     if not _halves(curve):
         return []
     half = replace(curve, periods=curve.periods // 2)
