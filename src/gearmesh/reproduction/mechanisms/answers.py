@@ -10,6 +10,7 @@ import xarray as xr
 from gearmesh.model.variants import variant as read_variant
 from gearmesh.reproduction.mechanisms.bands import NEAR_FIRST_JUMP, band
 from gearmesh.reproduction.mechanisms.bands import VARIANTS as BANDED
+from gearmesh.reproduction.mechanisms.long_runs import shares
 from gearmesh.reproduction.mechanisms.starts import VARIANT
 from gearmesh.reproduction.mechanisms.sweeps import DIRECTIONS, SEPARATE
 from gearmesh.reproduction.mechanisms.tables import Row
@@ -98,6 +99,8 @@ def answers(
         "chaos": _chaos(datasets["lyapunov"]),
         "contact_up_to": _contact_up_to(datasets["special_curves"]),
         "map": _map(datasets["design_map"]),
+        "ends": shares(datasets["attractors"], pair.revolutions * pair.teeth_3),
+        "ended": datasets["attractors"].attrs,
     }
 
 
