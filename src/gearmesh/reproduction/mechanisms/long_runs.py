@@ -160,7 +160,7 @@ def _share(cases: xr.Dataset, symbol: str, label: str, run: int) -> Share:
         symbol,
         {name: _percent(chosen) for name, chosen in members.items()},
         _percent(settling <= run),
-        float(np.median(settled)) if settled.size else np.nan,
+        float(np.quantile(settled, 0.5, method="inverted_cdf")) if settled.size else np.nan,
         float(settled.max()) if settled.size else np.nan,
     )
 
