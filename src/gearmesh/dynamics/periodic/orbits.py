@@ -127,7 +127,7 @@ class Orbit:
         """Velocity y' at the initial phase."""
         return float(self.state[1])
 
-    @property
+    @cached_property
     def points(self) -> np.ndarray:
         """y, y', b, b' at the initial phase of each mesh period, shape (periods, 4)."""
         found = [self.state]

@@ -121,15 +121,29 @@ def further(known: Iterable[Branch], ends: Iterable[Orbit], limits: Range) -> It
         orbit = waiting.pop(0)
         if any(holds(branch, orbit) for branch in found):
             continue
-        try:
-            branch = follow(orbit, "nu", limits)
-        except NoOrbit:
+        branch = _followed(orbit, limits)
+        if branch is None:
             continue
         found.append(branch)
         waiting[:0] = [
             point.orbit for point in branch.special if point.orbit.periods < orbit.periods
         ]
         yield branch
+
+
+def _followed(orbit: Orbit, limits: Range) -> Branch | None:
+    """Follow an orbit from the first of its mesh periods from which that succeeds.
+
+    Rounding decides whether every special point can be located, so another state may succeed.
+    """
+    own = orbit.reduced
+    for state in own.points:
+        try:
+            begun = replace(orbit, found=orbits.correct(own.problem, state, own.periods))
+            return follow(begun, "nu", limits)
+        except NoOrbit:
+            continue
+    return None
 
 
 def holds(branch: Branch, orbit: Orbit) -> bool:
