@@ -4,6 +4,7 @@ import dataclasses
 
 import numpy as np
 import pytest
+import xarray as xr
 
 import gearmesh as gm
 
@@ -37,6 +38,16 @@ def test_an_orbit_closes_and_has_units(pair, orbit):
     period = 2 * np.pi / (0.7 * pair.natural_frequency)
     assert float(found.time[-1]) == pytest.approx(period * 63 / 64)
     assert np.array_equal(found.y_rel[0], found.strobe_y_rel)
+
+
+@pytest.mark.parametrize("kind", ["orbit", "branch"])
+def test_a_dataset_with_complex_multipliers_is_written_and_read_again(orbit, kind, tmp_path):
+    found = orbit if kind == "orbit" else gm.follow(orbit, "nu", (0.69, 0.71))
+    dataset, how = found.to_dataset(), {"engine": "netcdf4", "auto_complex": True}
+    dataset.to_netcdf(tmp_path / "found.nc", **how)
+    with xr.open_dataset(tmp_path / "found.nc", **how) as again:
+        assert again.identical(dataset)
+        assert again.multipliers.dtype == complex
 
 
 def test_a_branch_passes_its_special_points_in_order(orbit):

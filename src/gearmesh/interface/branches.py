@@ -106,7 +106,8 @@ class Branch:
         -------
         xarray.Dataset
             Over ``point``: the parameter, `nu`, `y_max`, `y_min`, `stable`, `neutral`, and
-            `multipliers` (complex, over ``multiplier`` too). Lengths as in `Orbit.to_dataset`.
+            `multipliers` (complex, over ``multiplier`` too). Lengths as in `Orbit.to_dataset`,
+            whose notes state how to write the dataset.
         """
         found, pair = self.found, self.orbit.pair
         dataset = with_lengths(
