@@ -112,7 +112,7 @@ def resonant_orbit(branches: xr.Dataset, nu: float) -> tuple[float, float]:
 
 
 def phases(pair: Pair, resolution: int) -> xr.Dataset:
-    """Return what becomes of the paper's start at each starting phase, over ν_s.
+    """Return what becomes of the study's start at each starting phase, over ν_s.
 
     Parameters
     ----------

@@ -19,7 +19,7 @@ from gearmesh.model.problem import Branches, Problem, State
 from gearmesh.model.segments import segments
 from gearmesh.model.speeds import time_of
 from gearmesh.solvers import limits
-from gearmesh.solvers.compilation import inner, persistent
+from gearmesh.solvers.compilation import persistent
 from gearmesh.solvers.full import kernel
 from gearmesh.solvers.full.coordinates import embedding, kinds_of_period, projected, signs_act
 from gearmesh.solvers.full.measures import SAMPLE, SUMMARY, Step
@@ -43,40 +43,36 @@ _EXTREMA_PER_PERIOD = 64
 _MOST_TURNS = 10_000
 
 
-@inner
-def _go_on(stated, runs, first, per_period, most_turns, workspace):  # type: ignore[no-untyped-def]
-    """Integrate runs from number `first` on, and return the number of the first that is not over.
-
-    The arguments are those of `gearmesh.solvers.full.kernel.run`: what all runs share, and arrays
-    with a row for each run.
-    """
-    states, modes, strobes, extrema, samples, summaries = runs
-    turns = 0
-    for i in range(first, len(states)):
-        begun = summaries[i].steps
-        over = kernel.run(
-            *stated,
-            states[i],
-            modes[i : i + 1],
-            strobes[i],
-            extrema[i],
-            samples[i],
-            per_period,
-            summaries[i : i + 1],
-            most_turns - turns,
-            workspace,
-        )
-        if not over:
-            return i
-        turns += summaries[i].steps - begun
-    return len(states)
-
-
 def _build_runs(key: str, cache: bool) -> Callable[..., int]:
+    """Return the function that integrates runs, and returns the number of the first not over.
+
+    It begins with the run of number `first`. Its other arguments are those of `kernel.run`: what
+    all runs share, and arrays with a row for each run.
+    """
+
     @njit(cache=cache, nogil=True)
-    def compiled(*arguments):  # type: ignore[no-untyped-def]
+    def compiled(stated, runs, first, per_period, most_turns, workspace):  # type: ignore[no-untyped-def]
         key  # noqa: B018 (see persistent)
-        return _go_on(*arguments)
+        states, modes, strobes, extrema, samples, summaries = runs
+        turns = 0
+        for i in range(first, len(states)):
+            begun = summaries[i].steps
+            over = kernel.run(
+                *stated,
+                states[i],
+                modes[i : i + 1],
+                strobes[i],
+                extrema[i],
+                samples[i],
+                per_period,
+                summaries[i : i + 1],
+                most_turns - turns,
+                workspace,
+            )
+            if not over:
+                return i
+            turns += summaries[i].steps - begun
+        return len(states)
 
     return compiled
 
