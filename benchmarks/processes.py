@@ -5,7 +5,7 @@ from collections import Counter
 from pathlib import Path
 
 ADDED = (
-    *("orbits", "branches", "basins", "sweeps", "bands", "lyapunov", "special_curves", "why"),
+    *("branches", "basins", "sweeps", "bands", "lyapunov", "special_curves", "why"),
     "explorer",
 )
 """Jobs that the base does not have: the mechanisms and the explorer."""

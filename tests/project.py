@@ -10,7 +10,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from subprocess import CompletedProcess
 
-from snakemake_process import PATIENCE, Run
+from python_process import PATIENCE, Run
 
 import gearmesh as gm
 from gearmesh.model.variants import variant
@@ -100,7 +100,11 @@ class Project:
 
     def start(self, *arguments: str, options: Sequence[str] = ()) -> Run:
         """Start a run of targets."""
-        return Run(self.folder, self.environment, self.command(*arguments, options=options))
+        return self.start_python("-m", "snakemake", *self.command(*arguments, options=options))
+
+    def start_python(self, *arguments: str) -> Run:
+        """Start what a user types after `python`."""
+        return Run(self.folder, self.environment, arguments)
 
     def run(self, *arguments: str, options: Sequence[str] = ()) -> CompletedProcess[str]:
         """Run targets to the end."""

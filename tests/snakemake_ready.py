@@ -1,4 +1,4 @@
-"""What the server of `snakemake_process` has done once it has imported this, so no run does it.
+"""What the server of `python_process` has done once it has imported this, so no run does it.
 
 Half of the time that Snakemake takes to plan a study of the tests is to search for its plugins and
 to parse the same sources of gearmesh.

@@ -48,23 +48,32 @@ class Tab:
         return self.page
 
 
+@pytest.fixture(scope="session")
+def idle_tabs() -> dict[str, list[Tab]]:
+    """Tabs that no test uses at present, by their settings: a new tab is a new process."""
+    return {}
+
+
 @pytest.fixture
-def open_tab(chromium: Browser):
-    """Return a function that opens tabs, and checks at the end that none had a problem."""
-    tabs, contexts = [], []
+def open_tab(chromium: Browser, idle_tabs: dict[str, list[Tab]]):
+    """Return a function that gives blank tabs, and checks at the end that none had a problem."""
+    used: list[tuple[list[Tab], Tab]] = []
 
     def opened(width: int = 1280, height: int = 900, **settings: object) -> Tab:
-        context = chromium.new_context(
-            offline=True, viewport={"width": width, "height": height}, **settings
-        )
-        contexts.append(context)
-        tabs.append(Tab(context.new_page()))
-        return tabs[-1]
+        settings["viewport"] = {"width": width, "height": height}
+        idle = idle_tabs.setdefault(repr(settings), [])
+        if not idle:
+            idle.append(Tab(chromium.new_context(offline=True, **settings).new_page()))
+        used.append((idle, idle.pop()))
+        return used[-1][1]
 
     yield opened
-    for context in contexts:
-        context.close()
-    assert [problem for tab in tabs for problem in tab.problems] == []
+    problems = [problem for _, tab in used for problem in tab.problems]
+    for idle, tab in used:
+        tab.page.goto("about:blank")
+        tab.problems.clear()
+        idle.append(tab)
+    assert problems == []
 
 
 @pytest.fixture(scope="session")

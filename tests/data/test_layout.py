@@ -227,9 +227,6 @@ def test_figures_notebooks_and_what_the_report_reads():
     assert names[-12:] == [
         f"figures/{name}.{kind}" for name in paths.WHY_FIGURES for kind in ("png", "svg")
     ]
-    assert [path.as_posix() for path in places.orbits("c")] == [
-        *("results/mine/orbits/c.nc", "results/mine/orbits/c.json"),
-    ]
     # A label may be a wildcard of Snakemake.
     assert paths.case_name("c-material", "{nu}") == "c-material/nu-{nu}.nc"
 

@@ -17,6 +17,7 @@ from gearmesh.dynamics.periodic.general_orbits import shot_from
 from gearmesh.errors import NoOrbit
 from gearmesh.model.functions import Harmonic
 from gearmesh.model.problem import GeneralTerms, State
+from gearmesh.model.variants import variant
 from gearmesh.solvers.reduced.derivatives.variational import VELOCITY
 
 LIMITS = (0.3845, 0.3862)
@@ -67,6 +68,14 @@ def test_switching_points_are_the_exact_ones(name):
     np.testing.assert_allclose([nu for _, nu in found], [nu for _, nu in exact], atol=1e-10)
 
 
+def test_a_grazing_behind_which_nothing_damps_is_no_torus(pair):
+    """Multipliers by differences are rough there, and contact leaves a pair on the unit circle."""
+    orbit = orbits.find_orbit(pair.problem(variant("d-lubricant"), 1.12))
+    for one in (orbit, in_general(orbit)):
+        found = branches.follow(one, "nu", (1.1, 1.15)).special
+        assert [point.kind for point in found] == ["grazing_front"]
+
+
 def test_switching_points_of_two_wheels_have_a_turning_point_at_a_jump_of_the_stiffness():
     """Wheels of unequal bodies turn y back at a switch of C(t): SciPy stops there, and y rests."""
     case = problem(0.66, "c-material", friction_coefficient=0.0)
@@ -94,14 +103,18 @@ VARYING = {
 }
 
 
+@pytest.mark.parametrize("lubricant", [(0.05, 0.05, 0.0), (0.05, 0.0, 0.0)])
 @pytest.mark.parametrize("how", VARYING)
-def test_the_back_flanks_graze_where_the_gap_closes_and_opens_again(how):
-    """SciPy comes to y + s(t) = 0 at the time of the extremum, with a rate of 0."""
-    laws = {"material": (0.05, 0.05, 0.0), "lubricant": (0.05, 0.05, 0.0)}
+def test_the_back_flanks_graze_where_the_gap_closes_and_opens_again(how, lubricant):
+    """SciPy comes to y + s(t) = 0 at the time of the extremum, with a rate of 0.
+
+    Where the damping of material and lubricant differs, orbits are singular behind the grazing.
+    """
+    laws = {"material": (0.05, 0.05, 0.0), "lubricant": lubricant}
     whole = problem(0.955, "c-lubricant", friction_coefficient=0.0, **laws)
     near = State(*orbits.find_orbit(whole).state.tolist())
     begun = general_search.find_orbit(replace(whole, initial_state=near, **VARYING[how]))
-    found = branches.follow(begun, "nu", (0.945, 0.958), longest_step=0.1)
+    found = branches.follow(begun, "nu", (0.945, 0.97), longest_step=0.1)
     (point,) = (one for one in found.special if one.kind == "grazing_back")
     orbit = point.orbit
     extrema = orbit.gap_extrema

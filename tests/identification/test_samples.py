@@ -132,7 +132,7 @@ def small(tmp_path_factory):
     settings["designs"]["run_out_alone"]["vary"] = ["eccentricity_angle"]
     (project.folder / SETTINGS).write_text(yaml.safe_dump(settings), encoding="utf-8")
     # Short runs, because only what becomes of them is of interest.
-    project.edit("config/tiny.yaml", "title:", "revolutions: 2\ntitle:")
+    project.edit("config/tiny.yaml", "title:", "revolutions: 1\ntitle:")
     project.finished = project.run("identify")
     return project
 

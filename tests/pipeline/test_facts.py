@@ -23,7 +23,6 @@ ARGUMENTS = {
     "cases": "c",
     "case": "c-material",
     "figure": "fig2",
-    "orbits": "c",
     "samples": "main",
     "box": "main",
 }
@@ -132,7 +131,7 @@ def test_the_facts_of_a_job_are_the_parts_of_the_study_that_it_depends_on(plan):
     assert cases[0][:2] == ("c-material", 0.6)
     assert len(cases) == len(plan.letters["c"])
     assert written == (plan.study.plan.case_files, plan.study.plan.direction)
-    assert facts["orbits"](plan, "c")[-1] == (0.6, 1.2)
+    assert facts["branches"](plan)[-1] == plan.study.plan.nu.all
     claims = facts["figure"](plan, "fig2")[-1]
     assert [one.id for one in claims] == [f"F2.{n}" for n in range(1, 8)]
     assert {one.figure for one in facts["printed"](plan)[-1]} == {"printed"}

@@ -13,10 +13,12 @@ from gearmesh.model.variants import variant
 from gearmesh.reproduction.mechanisms import tables
 from gearmesh.reproduction.mechanisms.attractors import (
     all_branches,
+    carried_over,
     further,
     holds,
     reached,
 )
+from gearmesh.reproduction.mechanisms.orbits import WITHOUT_SUPPORTS
 from gearmesh.solvers.simulation import simulate
 
 NAME = "c-lubricant"
@@ -82,3 +84,16 @@ def test_an_orbit_on_a_branch_begins_no_other(found):
     along = [isola.at(i) for i in range(0, len(isola.found.values), 7)]
     assert all(holds(isola, orbit) for orbit in along)
     assert not list(further(found, along, LIMITS))
+
+
+def test_no_attractor_is_missing_without_friction_on_rigid_supports(pair):
+    """Those of b-□ are found again by runs, which know nothing of the other pair's branches."""
+    name, nus = "b-material", np.linspace(1.0, 1.2, 33)
+    limits, simpler = (1.0, 1.2), pair.replace(**WITHOUT_SUPPORTS)
+    known = all_branches(pair, name, limits, reached(pair, name, nus))
+    again = all_branches(simpler, name, limits, carried_over(known, simpler))
+    runs = reached(simpler, name, nus)
+    assert {orbit.periods for orbit in runs} == {1, 2}
+    assert all(sum(holds(branch, orbit) for branch in again) == 1 for orbit in runs)
+    kinds = [(point.kind, point.orbit.periods) for branch in again for point in branch.special]
+    assert kinds.count(("fold", 2)) == kinds.count(("grazing_back", 2)) == 2

@@ -171,7 +171,7 @@ END = {"ledger", "notebook_pages", "report", "crate", "hashes", "verdict"}
 CASES = {f"cases-{letter}" for letter in LETTERS}
 AFTER_CASES = {"datasets", "explorer", "why", *FIGURES, *END}
 AFTER_BRANCHES = {"basins", "special_curves", "explorer", "why", *END}
-MECHANISMS = {"orbits-c", "branches", "sweeps", "bands", "lyapunov", *AFTER_BRANCHES}
+MECHANISMS = {"branches", "sweeps", "bands", "lyapunov", *AFTER_BRANCHES}
 EVERYTHING = {*CASES, "thresholds", "printed", *AFTER_CASES, *MECHANISMS}
 STATED = {"identified_figures", *EVERYTHING}
 AFTER_THRESHOLDS = {"thresholds", "printed", *FIGURES, *END}
@@ -194,9 +194,9 @@ INCREMENTS = {
     "identified": ("config/identified.yaml", "", "# more\n", {"identified_figures", *REPORTED}),
     "thresholds": ("src/gearmesh/reproduction/thresholds.py", '"""', '""" ', AFTER_THRESHOLDS),
     "datasets": ("src/gearmesh/data/datasets.py", '"""', '""" ',
-                 {"branches", *AFTER_CASES, *AFTER_BRANCHES}),
+                 {"basins", *AFTER_CASES}),
     "orbits": ("src/gearmesh/dynamics/continuation/branches.py", '"""', '""" ',
-               {"orbits-c", "branches", *AFTER_BRANCHES}),
+               {"branches", *AFTER_BRANCHES}),
     "why": ("notebooks/why.ipynb", "## Basins", "## The basins",
             {"why", "notebook_pages", *REPORTED}),
     "solver": ("src/gearmesh/solvers/simulation.py", '"""', '""" ', EVERYTHING),
@@ -207,7 +207,8 @@ INCREMENTS = {
     "tolerance": ("config/paper.yaml", "tolerance: 1e-10", "tolerance: 1e-9", EVERYTHING),
     "parameter": ("config/paper.yaml", "value: 8 y_st", "value: 8.1 y_st", STATED),
     "units": ("config/paper.yaml", "value: 10 um", "value: 0.010 mm", INPUTS),
-    "step": ("config/smoke.yaml", "nu: {step: 0.05}", "nu: {step: 0.1}", {*CASES, *AFTER_CASES}),
+    "step": ("config/smoke.yaml", "nu: {step: 0.05}", "nu: {step: 0.1}",
+             {*CASES, *AFTER_CASES, "branches", *AFTER_BRANCHES}),
 }  # fmt: skip
 
 

@@ -3,6 +3,7 @@
 import os
 import re
 import shutil
+import signal
 from pathlib import Path
 from subprocess import CompletedProcess
 
@@ -55,10 +56,14 @@ def alter_secretly(path: Path) -> None:
 
 
 HARMS = (
-    {CASE: (Path.unlink, "missing"), DATASET: (alter_secretly, "damaged")},
-    {CONSERVATIVE: (alter_secretly, "damaged"), DATASET: (Path.unlink, "missing")},
+    {
+        CONSERVATIVE: (alter_secretly, "damaged"),
+        CASE: (Path.unlink, "missing"),
+        DATASET: (alter_secretly, "damaged"),
+    },
     {CONSERVATIVE: (cut_short, "damaged"), "batches/c.nc": (alter_secretly, "damaged")},
 )
+"""One file of each job, because a job gives one reason."""
 
 
 @pytest.mark.parametrize("harms", HARMS, ids=" and ".join)
@@ -70,7 +75,7 @@ def test_a_lost_or_damaged_file_is_named_and_made_again(tiny, copied, harms):
     for name, (_, kind) in harms.items():
         assert f"gearmesh: results/tiny/{name}: {kind}; to be made again" in finished.stdout
     cases = [name for name in harms if name.startswith("cases/")]
-    assert counted(finished)[0] == len(cases)
+    assert counted(finished) == (len(cases), 14 - len(cases))
     assert copied.results() == tiny.results()
 
 
@@ -103,7 +108,7 @@ def test_a_case_file_is_never_that_of_another_study(tiny, copied):
     other = "base: tiny.yaml\nname: tiny\ndamping: 4.1 N s/mm\n"
     copied.path("config/other.yaml").write_text(other)
     copied.config = "config/other.yaml"
-    assert copied.run("data", options=()).returncode == 0
+    assert copied.run(f"results/tiny/{CASE}").returncode == 0
     copied.config = tiny.config
     assert copied.results()[CASE] != tiny.results()[CASE]
     assert copied.run(f"results/tiny/{CASE}").returncode == 0
@@ -192,17 +197,28 @@ def test_a_study_whose_file_has_an_odd_name_needs_a_name(tiny, copied):
     assert copied.run("data").returncode == 2
     copied.edit(copied.config, "title:", "name: tiny\ntitle:")
     copied.path(f"results/tiny/{DATASET}").unlink()
-    assert counts(copied) == (0, 0)
+    finished = copied.run("data")
+    assert f"gearmesh: results/tiny/{DATASET}: missing; to be made again" in finished.stdout
+    assert counted(finished) == (0, 0)
     copied.config = tiny.config
     assert copied.results() == tiny.results()
 
 
-def test_a_study_without_case_files_gives_the_same_datasets(tiny, tmp_path):
+def test_a_killed_study_without_case_files_goes_on_and_gives_the_same_datasets(tiny, tmp_path):
+    """As the atlas, whose cases are in its batches only."""
     fresh = Project.create(tmp_path / "fresh", "config/tiny.yaml")
     fresh.edit("config/tiny.yaml", "title:", "case_files: false\ntitle:")
-    assert counts(fresh) == (14, 0)
-    for name in ("datasets/resonance.nc", DATASET, "batches/a.nc"):
+    run = fresh.start("data", options=("--cores", "1"))
+    run.wait_for(lambda: len([*(fresh.study / "logs").glob("cases-*")]) == 2)  # one is finished
+    run.send(signal.SIGKILL)
+    run.wait()
+    [kept] = (fresh.study / "manifests").glob("cases-*")
+    written = kept.stat().st_mtime_ns
+    assert counts(fresh) == ({"cases-a": 10, "cases-c": 4}[kept.stem], 0)
+    assert kept.stat().st_mtime_ns == written
+    for name in ("datasets/resonance.nc", DATASET, "batches/a.nc", "batches/c.nc"):
         assert fresh.results()[name] == tiny.results()[name]
     assert not [name for name in fresh.results() if name.startswith("cases/")]
     (fresh.study / "batches" / "c.nc").unlink()
-    assert counts(fresh) == (10, 0)
+    assert counted(fresh.run("results/tiny/batches/c.nc")) == (10, 0)
+    assert fresh.plan("data") == set()

@@ -174,10 +174,6 @@ class Places:
         stated = [self.branches, self.special_points, self.thresholds]
         return [*stated, *datasets, *self.why_files]
 
-    def orbits(self, letter: str) -> tuple[Path, Path]:
-        """Return the branches and the special points of a letter of Tab. 1."""
-        return self.folder / "orbits" / f"{letter}.nc", self.folder / "orbits" / f"{letter}.json"
-
     def mechanism(self, name: str) -> Path:
         """Return a dataset about what lies behind the curves."""
         return self.folder / "datasets" / f"{name}.nc"

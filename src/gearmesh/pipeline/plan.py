@@ -261,16 +261,13 @@ _FACTS: dict[str, Callable[..., object]] = {
     ),
     "datasets": lambda plan: (plan.study.title, plan.pair, _grid(plan.study)),
     "thresholds": lambda plan: (plan.pair, plan.study.variants),
-    "orbits": lambda plan, letter: (
-        *(plan.study.title, plan.pair, plan.mechanisms.by_letter[letter]),
-        (plan.study.nu[0], plan.study.nu[-1]),
+    "branches": lambda plan: (
+        *(plan.study.title, plan.pair, plan.mechanisms.variants),
+        plan.study.plan.nu.all,
     ),
     **{
         stage: lambda plan: (plan.study.title, plan.pair, plan.mechanisms)
-        for stage in (
-            *("branches", "basins", "sweeps", "bands", "lyapunov", "special_curves"),
-            *("why",),
-        )
+        for stage in ("basins", "sweeps", "bands", "lyapunov", "special_curves", "why")
     },
     "figure": lambda plan, name: (
         *(plan.study.title, plan.pair, plan.study.time_courses),

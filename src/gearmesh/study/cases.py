@@ -55,12 +55,6 @@ class Mechanisms(Section):
         64, description="points along each axis of basins and maps", ge=2, le=1000
     )
 
-    @property
-    def by_letter(self) -> dict[str, list[str]]:
-        """The variants of each letter of Tab. 1."""
-        letters = dict.fromkeys(name[0] for name in self.variants)
-        return {one: [name for name in self.variants if name[0] == one] for one in letters}
-
 
 class Plan(Section):
     """The cases of a study, and the files that are written."""

@@ -1,8 +1,10 @@
 """The long-run motion of many cases, each with its own laws and its own start."""
 
 import math
+import operator
+from collections import defaultdict
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import NamedTuple
 
 import numpy as np
@@ -11,16 +13,18 @@ from gearmesh.dynamics.attraction.attractors import (
     LOST,
     MOVING,
     NEUTRAL,
+    PERIODIC,
     SAME,
     Attractor,
 )
 from gearmesh.dynamics.attraction.envelopes import RISE, Envelope, envelope_of
 from gearmesh.dynamics.attraction.irregular import irregular_kinds
 from gearmesh.dynamics.attraction.maps import WEIGHTS, ReducedMap
-from gearmesh.dynamics.periodic.orbits import Orbit, correct
+from gearmesh.dynamics.periodic.orbits import Orbit, correct, newton_correction
 from gearmesh.dynamics.starts import initial_coordinates
 from gearmesh.errors import NoOrbit
 from gearmesh.model.problem import Problem
+from gearmesh.solvers.reduced.derivatives.period_map import passage
 from gearmesh.solvers.reduced.ensembles import advance, laws_of, trace
 
 CHECKED_AFTER = (105, 210, 420, 840, 1260)
@@ -32,6 +36,7 @@ SETTLED = 1e-3
 _CHUNK = 512  # cases at a time; it bounds the memory
 _MOST_PERIODS = 12  # of the orbits that are searched for
 _NEAR = 0.05  # distance after n periods, in y_st, of a motion that may approach an orbit
+_REACH = 0.1  # first correction, in y_st, of a motion that Newton's method may bring to an orbit
 _AS_CLOSE = 2.0
 
 
@@ -57,11 +62,11 @@ class LongRun(NamedTuple):
 
 @dataclass(slots=True)
 class _Run:
-    """A run that is followed."""
+    """A run that is followed, and the stable orbits that runs of its gear pair have led to."""
 
     problem: Problem
     envelope: Envelope | None
-    orbit: Orbit | None = None
+    known: list[Orbit]
     margin: float = -math.inf
     strobes: list[np.ndarray] = field(default_factory=list)
 
@@ -86,7 +91,11 @@ def classify(problems: Sequence[Problem]) -> list[LongRun]:
 
 
 def _classify(problems: Sequence[Problem]) -> list[LongRun]:
-    runs = [_Run(problem, envelope_of(problem)) for problem in problems]
+    known: defaultdict[Problem, list[Orbit]] = defaultdict(list)
+    runs = [
+        _Run(problem, envelope_of(problem), known[replace(problem, initial_state=None)])
+        for problem in problems
+    ]
     laws = laws_of(problems)
     states = np.array([initial_coordinates(problem) for problem in problems])
     found: dict[int, LongRun] = {}
@@ -131,34 +140,38 @@ def _ending(run: _Run, end: np.ndarray, last: bool) -> LongRun | None:
             return LongRun(Attractor(NEUTRAL, exponent=rate, time_constant=constant), None)
         if last and any(run.problem.lubricant) and margin > RISE * before:
             return LongRun(Attractor(MOVING, exponent=rate, time_constant=constant), None)
-    strobes = np.concatenate(run.strobes)
+    strobes, near = np.concatenate(run.strobes), []
     for orbit in _candidates(run, strobes, end):
-        points = orbit.points
-        away = np.abs((points - end) * WEIGHTS).max(axis=1)
+        away = np.abs((orbit.points - end) * WEIGHTS).max(axis=1)
         if away.min() < SETTLED:
-            attractor = Attractor.of(orbit)
-            return LongRun(attractor, _settled(strobes, points, int(away.argmin())), orbit)
-        if last and away.min() < _NEAR:
-            slow = Attractor.of(orbit)
-            moving = Attractor(MOVING, exponent=slow.exponent, time_constant=slow.time_constant)
-            return LongRun(moving, None, orbit)
+            settled = _settled(strobes, orbit.points, int(away.argmin()))
+            return LongRun(Attractor.of(orbit), settled, orbit)
+        near += [(float(away.min()), orbit)] if away.min() < _NEAR else []
+    if last and near:
+        _, orbit = min(near, key=operator.itemgetter(0))
+        slow = Attractor.of(orbit)
+        moving = Attractor(MOVING, exponent=slow.exponent, time_constant=slow.time_constant)
+        return LongRun(moving, None, orbit)
     return None
 
 
 def _candidates(run: _Run, strobes: np.ndarray, end: np.ndarray) -> Iterator[Orbit]:
-    """Yield the stable orbit that a run may approach: one known before, or a new one."""
-    if run.orbit:
-        yield run.orbit
+    """Yield the stable orbits that a run may approach: those known before, and a new one."""
+    yield from run.known
     back = np.abs(strobes[-2 : -2 - _MOST_PERIODS : -1] - strobes[-1]).max(axis=1)
     if not back.min() < _NEAR:
         return
     periods = int(np.argmax(back < _AS_CLOSE * back.min() + SAME)) + 1
+    moved = passage(run.problem, end, periods)
+    if not np.abs(newton_correction(moved, end) * WEIGHTS).max() < _REACH:
+        return
     try:
         orbit = correct(run.problem, end, periods)
     except NoOrbit:
         return
-    if orbit.stable:
-        run.orbit = orbit
+    found = Attractor(PERIODIC, orbit)
+    if orbit.stable and not any(found.same_as(Attractor(PERIODIC, one)) for one in run.known):
+        run.known.append(orbit)
         yield orbit
 
 

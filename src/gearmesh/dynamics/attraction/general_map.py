@@ -90,22 +90,25 @@ class GeneralMap:
 
     def advance(self, states: np.ndarray, steps: int) -> np.ndarray:
         """Return states after some steps."""
-        found = np.full_like(states, np.nan)
-        for i, state in enumerate(states):
-            try:
-                found[i] = self._end(state, steps)
-            except NoOrbit:
-                continue
-        return found
+        try:
+            return self._ends(states, steps)
+        except NoOrbit:
+            if len(states) == 1:
+                return np.full_like(states, np.nan)
+        return np.concatenate([self.advance(state[None], steps) for state in states])
 
-    def _end(self, state: np.ndarray, steps: int) -> np.ndarray:
+    def _ends(self, states: np.ndarray, steps: int) -> np.ndarray:
         if self._chart.rotation == HELD:
-            for _ in range(steps):
-                state = self._next(shot_from(self.problem, state, self.block, self._angle))
-            return state
+            return np.array([self._held(state, steps) for state in states])
         if steps not in self._motions:
             self._motions[steps] = ends(self.problem, steps * self.block)
-        return self._chart.unknowns(self._motions[steps](self._chart.place(state, self._angle)))
+        places = self._motions[steps](self._places(states))
+        return np.array([self._chart.unknowns(place) for place in places])
+
+    def _held(self, state: np.ndarray, steps: int) -> np.ndarray:
+        for _ in range(steps):
+            state = self._next(shot_from(self.problem, state, self.block, self._angle))
+        return state
 
     def _next(self, shot: GeneralOrbit) -> np.ndarray:
         held = float(shot.state[0])

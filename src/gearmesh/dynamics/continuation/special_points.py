@@ -12,26 +12,11 @@ from functools import cache
 from itertools import combinations, pairwise
 
 import numpy as np
-from scipy.optimize import brentq
 
 from gearmesh.dynamics.continuation.curves import Curve, Point
 from gearmesh.dynamics.periodic.shots import Shot
 from gearmesh.errors import NoOrbit
-from gearmesh.model.problem import Problem
-from gearmesh.solvers.reduced.derivatives.curves import DAMPING, JACOBIAN, TANGENT
-from gearmesh.solvers.reduced.derivatives.deviations import DEVIATIONS, SIZE
-from gearmesh.solvers.reduced.derivatives.period_map import segments_of
-from gearmesh.solvers.reduced.derivatives.variational import (
-    AFTER,
-    BEFORE,
-    CROSSING,
-    HEIGHT,
-    KIND,
-    SEGMENT,
-    SWITCH,
-    TURN,
-    VELOCITY,
-)
+from gearmesh.solvers.reduced.derivatives.variational import AFTER, BEFORE, VELOCITY
 
 BIFURCATIONS = ("fold", "branch_point", "flip", "torus")
 GRAZINGS = ("grazing_front", "grazing_back")
@@ -51,11 +36,12 @@ BACK: Extrema = operator.attrgetter("gap_extrema")
 Beside = Callable[[Point, float], Point]
 """`Curve.beside` of a curve, which remembers the points."""
 
-_MARGIN = 0.25
 _OFFSET = 1e-5
 _NARROWEST = 1e-6  # piece of a branch; roots of one test closer than this are not separated
 _NARROWEST_PIECE = 1e-11  # between two grazings, in which multipliers are tested
 _ROOT_WIDTH = 1e-13
+_NEAREST = 1e-10  # distance from an abrupt grazing that stands for it
+_SHARE = 0.99  # of the distance to such a grazing that a step passes
 _LARGEST_VALUE = 1e-7  # of a test function at its root: more is a jump
 _LEAST_SLOPE = 1e-6  # of the parameter along a branch at both sides of a fold
 _SAME_SWITCHING = 1e-9  # distance in the parameter
@@ -91,90 +77,6 @@ def search(
     return sorted(found, key=lambda item: float(left.tangent @ item[1].place))
 
 
-def suspects(points: list[Point]) -> list[tuple[int, set[str]]]:
-    """Return every i for which a special point may lie between point i and the next one.
-
-    A piece of the branch is suspect if a test function changes sign in it. It is also suspect if a
-    test function may cross 0 twice in it, that is, if its value at an end is less than `_MARGIN`
-    times its change nearby. All test functions are computed for all points at once, so only the
-    suspect pieces need a closer look. The kinds that may lie there are returned with each i.
-    """
-    found = [point.found for point in points if point.found and len(point.found[1])]
-    if len(found) < len(points):
-        return [(i, set(KINDS)) for i in range(len(points) - 1)]
-    heights, velocities, crossings = _event_functions(points[0].orbit.problem, found)
-    bifurcations = _bifurcation_functions(points, np.array([row for row, _ in found]))
-    functions = np.column_stack([*bifurcations, *heights, *velocities])
-    kinds = np.array([*BIFURCATIONS, *GRAZINGS, *("switching" for _ in velocities)])
-    with np.errstate(invalid="ignore"):
-        change = np.abs(np.diff(functions, axis=0))
-        nearby = change.copy()
-        nearby[1:] = np.fmax(nearby[1:], change[:-1])
-        nearby[:-1] = np.fmax(nearby[:-1], change[1:])
-        size = np.abs(functions)
-        near = (functions[1:] * functions[:-1] <= 0.0) | (
-            np.fmin(size[1:], size[:-1]) < _MARGIN * nearby
-        )
-    near[:, np.isin(kinds, GRAZINGS)] |= (np.diff(crossings) != 0)[:, None]
-    return [(int(i), set(kinds[near[i]])) for i in np.flatnonzero(near.any(axis=1))]
-
-
-def _bifurcation_functions(points: list[Point], rows: np.ndarray) -> list[np.ndarray]:
-    """Return the functions of `_bifurcation_tests`, each at all points."""
-    extended = rows[:, JACOBIAN:TANGENT].reshape(-1, SIZE, DEVIATIONS)
-    jacobians = np.ascontiguousarray(extended[:, :, :SIZE])
-    return [
-        np.array([point.slope for point in points]),
-        np.array([point.determinant for point in points]),
-        np.linalg.det(jacobians + np.eye(SIZE)),
-        np.where(rows[:, DAMPING] != 0.0, _pair_products(jacobians), np.nan),
-    ]
-
-
-def _pair_products(jacobians: np.ndarray) -> np.ndarray:
-    """Return the products of all mu_i mu_k - 1, from the characteristic polynomials.
-
-    The sums mu_1 mu_2 + mu_3 mu_4, ... are the roots of the resolvent cubic of the polynomial.
-    """
-    square = jacobians @ jacobians
-    one, two = (np.einsum("kii->k", power) for power in (jacobians, square))
-    three = np.einsum("kij,kji->k", square, jacobians)
-    e_2 = (one**2 - two) / 2.0
-    e_3 = (one**3 - 3.0 * one * two + 2.0 * three) / 6.0
-    e_4 = np.linalg.det(jacobians)
-    s = 1.0 + e_4
-    cubic = s**3 - e_2 * s**2 + (one * e_3 - 4.0 * e_4) * s
-    return cubic - (one**2 * e_4 + e_3**2 - 4.0 * e_2 * e_4)
-
-
-def _event_functions(
-    problem: Problem, found: list[tuple[np.ndarray, np.ndarray]]
-) -> tuple[list[np.ndarray], np.ndarray, np.ndarray]:
-    """Return functions that pass 0 where events appear or vanish, each at all points.
-
-    The first functions are the least distances between extrema of y and the ends of regimes. The
-    others are the velocities where C(t) jumps. Such a velocity counts only if y'' changes sign at
-    the jump, at this point or a neighbouring one. The last result is the number of changes of
-    regime.
-    """
-    stiffness = segments_of(problem)[:, 1]
-    events = np.concatenate([one for _, one in found])
-    first = np.cumsum([0, *(len(one) for _, one in found[:-1])])
-    kind, height = events[:, KIND], events[:, HEIGHT]
-    jumps = (kind == SWITCH) & (stiffness != np.roll(stiffness, 1))[events[:, SEGMENT].astype(int)]
-    margins = [
-        np.minimum.reduceat(np.where(kind == TURN, np.abs(height - level), np.inf), first)
-        for level in (0.0, -problem.backlash)
-    ]
-    velocities = events[jumps, VELOCITY].reshape(len(found), -1)
-    turning = (events[jumps, BEFORE] * events[jumps, AFTER] < 0.0).reshape(velocities.shape)
-    beside = turning.copy()
-    beside[1:] |= turning[:-1]
-    beside[:-1] |= turning[1:]
-    velocities[~beside] = np.nan
-    return margins, velocities.T, np.add.reduceat(kind == CROSSING, first, dtype=int)
-
-
 def special_points(
     curve: Curve, left: Point, right: Point, kinds: set[str]
 ) -> list[tuple[str, Point]]:
@@ -186,7 +88,7 @@ def special_points(
     beside = cache(curve.beside)
     tests = [test for test in _event_tests(left, right) if test[0] in kinds]
     events = _once(search(curve, left, right, tests, beside))
-    tests = [test for test in _bifurcation_tests() if events or test[0] in kinds]
+    tests = [test for test in bifurcation_tests() if events or test[0] in kinds]
     ends = [left, *(point for _, point in events), right]
     bifurcations = [
         found
@@ -222,12 +124,8 @@ def _search(
             if np.isnan(before) or np.isnan(after):
                 continue
             if (before < 0.0) != (after < 0.0):
-                try:
-                    point = _locate(curve, start, end, test)
-                except NoOrbit:
-                    if kind == "grazing_back" and start.orbit.problem.terms.backlash_varies:
-                        continue  # see `_event_tests`
-                    raise
+                abrupt = kind == "grazing_back" and start.orbit.problem.terms.backlash_varies
+                point = (_approach if abrupt else _locate)(curve, start, end, test)
                 if _confirmed(kind, test, start, point, end):
                     yield kind, point
             elif _may_dip(test, (start, before), (end, after), beside, offset):
@@ -270,6 +168,8 @@ def _locate(curve: Curve, left: Point, right: Point, test: Callable[[Point], flo
 
     Each point is predicted from the two nearest ones that are known.
     """
+    from scipy.optimize import brentq  # here, because it takes long to import
+
     known = {0.0: left, 1.0: right}
 
     def at(share: float) -> Point:
@@ -283,6 +183,34 @@ def _locate(curve: Curve, left: Point, right: Point, test: Callable[[Point], flo
     return at(brentq(lambda share: test(at(share)), 0.0, 1.0, xtol=_ROOT_WIDTH))
 
 
+def _approach(curve: Curve, left: Point, right: Point, test: Callable[[Point], float]) -> Point:
+    """Return the point between two others where a height passes 0, from the side where it is > 0.
+
+    Flanks with a moving gap touch at a rate y' that is not 0. If the damping jumps there, the
+    motion behind the grazing changes with the square root of the depth, and Newton's method may
+    fail. Before the grazing the height is smooth, and three points tell where it passes 0.
+    """
+    normal, forth = left.tangent, test(left) > 0.0
+    free, length = (left, _OFFSET) if forth else (right, -_OFFSET)
+    heights, distances = [test(free)], [0.0]
+    while abs(length) > _NEAREST:
+        place = free.place + length / float(free.tangent @ normal) * free.tangent
+        try:
+            point = curve.point(place, normal, normal)
+            height = test(point)
+        except NoOrbit:
+            height = 0.0
+        if not height > 0.0:
+            length *= 0.5
+            continue
+        free = point
+        heights, distances = [*heights[-2:], height], [*distances[-2:], distances[-1] + length]
+        # A parabola gives the distance as a function of the height.
+        parabola = np.linalg.solve(np.vander(np.array(heights) / height), distances)
+        length = _SHARE * float(parabola[-1] - distances[-1])
+    return free
+
+
 def _confirmed(
     kind: str, test: Callable[[Point], float], left: Point, point: Point, right: Point
 ) -> bool:
@@ -293,7 +221,8 @@ def _confirmed(
     if kind == "fold":
         return min(abs(left.slope), abs(right.slope)) > _LEAST_SLOPE
     if kind == "torus":
-        return _has_pair_on_the_unit_circle(point.orbit)
+        sides = left.orbit, right.orbit
+        return _has_pair_on_the_unit_circle(point.orbit) and all(map(_is_off_the_circle, sides))
     if kind == "switching":
         return _turns_at_a_switch(point.orbit)
     if kind == "branch_point":
@@ -313,11 +242,22 @@ def _turns_at_a_switch(orbit: Shot) -> bool:
 
 def _has_pair_on_the_unit_circle(orbit: Shot) -> bool:
     """Return whether the multipliers with the product 1 are a complex pair, not two real ones."""
-    products = [(abs(a * b - 1.0), a) for a, b in combinations(orbit.multipliers, 2)]
-    return bool(abs(min(products, key=lambda item: item[0])[1].imag) > 1e-6)
+    return bool(abs(_nearest_to_the_circle(orbit)[1].imag) > 1e-6)
 
 
-def _bifurcation_tests() -> list[Test]:
+def _is_off_the_circle(orbit: Shot) -> bool:
+    """Return whether no product of two multipliers is 1 within their error, as at a grazing."""
+    return _nearest_to_the_circle(orbit)[0] > orbit.multiplier_error
+
+
+def _nearest_to_the_circle(orbit: Shot) -> tuple[float, complex]:
+    """Return the least |mu_i mu_k - 1|, and mu_i."""
+    products = [(float(abs(a * b - 1.0)), a) for a, b in combinations(orbit.multipliers, 2)]
+    return min(products, key=operator.itemgetter(0))
+
+
+def bifurcation_tests() -> list[Test]:
+    """Return the tests of all bifurcations, in the order of `BIFURCATIONS`."""
     return [
         ("fold", lambda point: point.slope),
         ("branch_point", lambda point: point.determinant),
@@ -332,12 +272,7 @@ def flip_test(orbit: Shot) -> float:
 
 
 def _event_tests(left: Point, right: Point) -> list[Test]:
-    """Return the tests for events that appear or vanish between two points of a branch.
-
-    Flanks with a moving gap touch at a rate y' that is not 0. If the damping jumps there, the
-    motion behind the grazing changes with the square root of the depth, and Newton's method may
-    fail beside it. Such a grazing of the back flanks is left out.
-    """
+    """Return the tests for events that appear or vanish between two points of a branch."""
     tests: list[Test] = []
     for name, extrema in (("grazing_front", FRONT), ("grazing_back", BACK)):
         for time, _, kind in extrema(left.orbit):
@@ -358,9 +293,22 @@ def torus_test(orbit: Shot) -> float:
     Without damping in the mesh a pair may be there all along the branch; the result is then
     not-a-number.
     """
-    if orbit.undamped:
-        return float("nan")
-    return float(np.prod([a * b - 1.0 for a, b in combinations(orbit.multipliers, 2)]).real)
+    return float("nan") if orbit.undamped else float(product_of_pairs(orbit.monodromy))
+
+
+def product_of_pairs(matrices: np.ndarray) -> np.ndarray:
+    """Return the product of all mu_i mu_k - 1, i < k, of the eigenvalues mu of each matrix.
+
+    The products mu_i mu_k are the eigenvalues of the second compound matrix, of the minors of
+    order two.
+    """
+    i, k = np.triu_indices(matrices.shape[-1], 1)
+    rows, others = i[:, None], k[:, None]
+    compound = (
+        matrices[..., rows, i] * matrices[..., others, k]
+        - matrices[..., rows, k] * matrices[..., others, i]
+    )
+    return np.linalg.det(compound - np.eye(i.size))
 
 
 def _height(extrema: Extrema, phase: float, kind: float) -> Callable[[Point], float]:

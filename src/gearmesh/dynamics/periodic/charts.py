@@ -59,13 +59,17 @@ class Chart:
         return np.delete(np.arange(2 * self.n), left_out)
 
     def place_of_six(self, six: np.ndarray) -> np.ndarray:
-        """Return the place of a motion in the six coordinates and their rates."""
+        """Return the place of a motion in the six coordinates and their rates.
+
+        Places and coordinates may have further axes in front.
+        """
         found = projected(six, self.columns)
-        return np.concatenate([found[: self.n], found[6 : 6 + self.n]])
+        return np.concatenate([found[..., : self.n], found[..., 6 : 6 + self.n]], axis=-1)
 
     def six(self, place: np.ndarray) -> np.ndarray:
         """Return the six coordinates and their rates at a place."""
-        return np.concatenate([self.columns @ place[: self.n], self.columns @ place[self.n :]])
+        both = place[..., : self.n], place[..., self.n :]
+        return np.concatenate([part @ self.columns.T for part in both], axis=-1)
 
     def place(self, unknowns: np.ndarray, angle: float) -> np.ndarray:
         """Return the place that unknowns of an orbit state; `angle` is that of mean rotation."""

@@ -9,28 +9,44 @@ LARGEST_STEP = 1e-3
 
 _SHARES = (1.0, 0.1, 0.01, 0.001)
 _SMOOTH = 1e-8  # difference between orders without a kink
+_PLACES = np.array([-3.0, -2.0, -1.0, 1.0, 2.0, 3.0])
 _SIXTH = np.array([-1.0, 9.0, -45.0, 45.0, -9.0, 1.0]) / 60.0
 _FOURTH = np.array([0.0, 1.0, -8.0, 8.0, -1.0, 0.0]) / 12.0
 
 
-def slope(
+def jacobian(
     function: Callable[[np.ndarray], np.ndarray],
     place: np.ndarray,
-    along: np.ndarray,
     largest: float = LARGEST_STEP,
 ) -> np.ndarray:
-    """Return the derivative of a function along a direction, by differences of sixth order.
+    """Return the Jacobian of a map by differences of sixth order.
 
-    Differences of fourth order serve as a check: they deviate if the function has a kink nearby.
-    The step is then reduced, starting from `largest`.
+    Differences of fourth order serve as a check: they deviate if the map has a kink nearby. In
+    these directions the step is then reduced.
+
+    Parameters
+    ----------
+    function : callable
+        From places, shape (m, n), to their images, shape (m, k).
+    place : ndarray, shape (n,)
+    largest : float
+        The first step.
+
+    Returns
+    -------
+    ndarray, shape (k, n)
     """
-    best = np.inf
+    n = place.size
+    waiting, best, columns = np.arange(n), np.full(n, np.inf), [place] * n
     for step in largest * np.array(_SHARES):
-        sides = [function(place + n * step * along) for n in (-3, -2, -1, 1, 2, 3)]
-        sixth, fourth = (np.dot(weights, sides) / step for weights in (_SIXTH, _FOURTH))
-        error = float(np.abs(sixth - fourth).max())
-        if error < best:
-            found, best = sixth, error
-        if error < _SMOOTH:
+        away = step * _PLACES[:, None, None] * np.eye(n)[waiting]
+        sides = function((place + away).reshape(-1, n)).reshape(len(_PLACES), len(waiting), -1)
+        sixth, fourth = (np.tensordot(one, sides, 1) / step for one in (_SIXTH, _FOURTH))
+        errors = np.abs(sixth - fourth).max(axis=1)
+        for i, column, error in zip(waiting, sixth, errors, strict=True):
+            if error < best[i]:
+                columns[i], best[i] = column, error
+        waiting = waiting[errors >= _SMOOTH]
+        if not waiting.size:
             break
-    return np.asarray(found)
+    return np.column_stack(columns)

@@ -9,7 +9,6 @@ from itertools import pairwise
 
 import numpy as np
 from numpy.polynomial import polynomial
-from scipy.optimize import brentq
 
 from gearmesh.model.mesh import mesh_stiffness
 from gearmesh.model.problem import Problem
@@ -77,6 +76,8 @@ def _turns(step: Step, slopes: np.ndarray, rate: float) -> Iterator[tuple[float,
     `rate` is the rate at the end of the step before. Rounding may leave the change of sign between
     two steps.
     """
+    from scipy.optimize import brentq  # here, because it takes long to import
+
     times = step.duration * _GRID
     rates = polynomial.polyval(times, slopes)
     if rate * rates[0] < 0.0:

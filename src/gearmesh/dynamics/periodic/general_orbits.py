@@ -22,14 +22,14 @@ from gearmesh.dynamics.periodic.charts import (
     state_at_place,
     with_moments,
 )
-from gearmesh.dynamics.periodic.differences import LARGEST_STEP, slope
+from gearmesh.dynamics.periodic.differences import LARGEST_STEP, jacobian
 from gearmesh.dynamics.periodic.general_events import gap_extrema, stiffness_jumps
 from gearmesh.dynamics.periodic.orbits import TimeCourse, sorted_multipliers
 from gearmesh.errors import NoOrbit
 from gearmesh.model.contact import regime_of
 from gearmesh.model.problem import Problem, State
 from gearmesh.solvers.full.measures import Step
-from gearmesh.solvers.full.runs import Propagation, integrate, steps_of
+from gearmesh.solvers.full.runs import Runs, integrate, steps_of
 from gearmesh.solvers.response import Response
 
 _TOLERANCE = 1e-14
@@ -229,16 +229,15 @@ class GeneralOrbit:
         found, place, motions = [], self.start, ends(self.held, self.periods)
         for n in range(self.periods):
             end = partial(motions, first=n, last=n + 1)
-            found.append(np.array([slope(end, place, one) for one in np.eye(place.size)]).T)
-            place = end(place)
+            found.append(jacobian(end, place))
+            place = end(place[None])[0]
         kept = self.chart.kept
         found[0] = found[0][:, kept]
         found[-1] = found[-1][kept]
         return found
 
     def _jacobian(self, step: float) -> np.ndarray:
-        end = ends(self.held, self.periods)
-        return np.array([slope(end, self.start, one, step) for one in np.eye(self.end.size)]).T
+        return jacobian(ends(self.held, self.periods), self.start, step)
 
     @property
     def undamped(self) -> bool:
@@ -337,27 +336,36 @@ def shot_from(problem: Problem, state: np.ndarray, periods: int, angle: float) -
     bare = replace(problem, initial_state=None)
     chart = chart_of(bare)
     held = with_moments(bare, chart.moments(bare, state, periods))
-    end = ends(held, periods)(chart.place(state, angle))
+    end = end_of(held, periods, chart.place(state, angle))
     return GeneralOrbit(bare, periods, state, angle, end)
 
 
 def ends(problem: Problem, periods: int, share: float = 1.0) -> Callable[..., np.ndarray]:
-    """Return a function that maps the place where a motion starts to the place where it ends.
+    """Return a function that maps places where motions start, shape (m, 2 n), to where they end.
 
-    Its further arguments are those of `Propagation.end`.
+    Its further arguments are `first` and `last` of `Runs.ends`.
     """
-    chart, motions = chart_of(problem), Propagation(problem, periods, _TOLERANCE, share)
-    return lambda place, **part: chart.place_of_six(motions.end(chart.six(place), **part))
+    chart = chart_of(problem)
+    runs = Runs(problem.over_periods(periods, 0, None), False, share)
+    return lambda places, **part: chart.place_of_six(
+        runs.ends(chart.six(places), _TOLERANCE, **part)
+    )
+
+
+def end_of(problem: Problem, periods: int, place: np.ndarray) -> np.ndarray:
+    """Return the place where the motion from one place ends."""
+    found: np.ndarray = ends(problem, periods)(place[None])[0]
+    return found
 
 
 def moved_to_phase(problem: Problem, place: np.ndarray, phase: float) -> np.ndarray:
     """Return the place where a motion is at another mesh phase, with the shafts as at t = 0."""
     share = (phase - problem.initial_phase) % 1.0
     if share > 0.0:
-        place = ends(problem, 1, share)(place)
+        place = ends(problem, 1, share)(place[None])[0]
     common = common_period(problem)
     if phase < problem.initial_phase and common > 1:
-        place = ends(replace(problem, initial_phase=phase), common)(place, first=1)
+        place = ends(replace(problem, initial_phase=phase), common)(place[None], first=1)[0]
     return place
 
 

@@ -10,7 +10,7 @@ from gearmesh.dynamics.periodic.general_orbits import (
     SAME,
     GeneralOrbit,
     common_period,
-    ends,
+    end_of,
     run_of,
     shot_from,
 )
@@ -95,7 +95,7 @@ def correct(orbit: GeneralOrbit) -> GeneralOrbit:
         raise NoOrbit(reason)
     for shorter in range(orbit.repeats_after, periods, orbit.repeats_after):
         if periods % shorter == 0:
-            end = ends(orbit.held, shorter)(orbit.start)
+            end = end_of(orbit.held, shorter, orbit.start)
             if np.abs(orbit.chart.closing(orbit.start, end)).max() < SAME:
                 raise NoOrbit(f"Newton's method leads to an orbit of period {shorter}")
     return orbit

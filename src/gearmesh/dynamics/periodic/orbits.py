@@ -127,7 +127,7 @@ class Orbit:
         """Velocity y' at the initial phase."""
         return float(self.state[1])
 
-    @property
+    @cached_property
     def points(self) -> np.ndarray:
         """y, y', b, b' at the initial phase of each mesh period, shape (periods, 4)."""
         found = [self.state]
@@ -174,6 +174,11 @@ class Orbit:
     def multipliers(self) -> np.ndarray:
         """Floquet multipliers, complex array of shape (4,), the largest modulus first."""
         return sorted_multipliers(np.linalg.eigvals(self.monodromy))
+
+    @property
+    def multiplier_error(self) -> float:
+        """Estimated error of the multipliers, as of `certificate`."""
+        return self.certificate.multiplier_error
 
     @property
     def growth(self) -> float:

@@ -52,6 +52,10 @@ class Shot(Protocol):
         """Floquet multipliers, the largest modulus first."""
 
     @property
+    def multiplier_error(self) -> float:
+        """Estimated error of the multipliers."""
+
+    @property
     def growth(self) -> float:
         """Logarithm of the greatest growth of a deviation in a mesh period."""
 

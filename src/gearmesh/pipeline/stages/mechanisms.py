@@ -1,14 +1,13 @@
 """Compute what lies behind the response curves: branches of orbits, basins, sweeps and more."""
 
-from collections.abc import Collection
 from pathlib import Path
 
 from gearmesh.data.paths import Places
 from gearmesh.study.cases import Mechanisms, Study
 
 
-def orbits(study: Study, places: Places, letter: str) -> list[Path]:
-    """Follow the orbits of the variants of one letter of Tab. 1, and locate their special points.
+def branches(study: Study, places: Places) -> list[Path]:
+    """Follow the orbits of the variants, and locate their special points.
 
     Those of periods 1 and 2 are located again without friction and on rigid supports.
     """
@@ -16,41 +15,24 @@ def orbits(study: Study, places: Places, letter: str) -> list[Path]:
 
     from gearmesh.data.writing import write_text
     from gearmesh.reproduction.mechanisms import files, tables
-    from gearmesh.reproduction.mechanisms.attractors import all_branches, reached
+    from gearmesh.reproduction.mechanisms.attractors import (
+        all_branches,
+        carried_over,
+        reached,
+    )
     from gearmesh.reproduction.mechanisms.orbits import WITHOUT_SUPPORTS
 
-    names = _mechanisms(study).by_letter[letter]
     limits = float(study.nu[0]), float(study.nu[-1])
     simpler = study.pair.replace(**WITHOUT_SUPPORTS)
-    made, rows = [], []
-    for name in names:
+    made, rows, rows_without = [], [], []
+    for name in _mechanisms(study).variants:
         found = all_branches(study.pair, name, limits, reached(study.pair, name, study.nu))
-        again = all_branches(simpler, name, limits, ends=[])
+        again = all_branches(simpler, name, limits, carried_over(found, simpler))
         made += [tables.table(name, found)] if found else []
         rows += tables.rows(name, found, {})
-        rows += tables.rows(name, again, WITHOUT_SUPPORTS)
-    dataset, points = places.orbits(letter)
-    files.write(dataset, tables.joined(made), study, "branches of orbits")
-    write_text(points, json.dumps(rows))
-    return [dataset, points]
-
-
-def branches(study: Study, places: Places) -> list[Path]:
-    """Put the branches and the special points of all letters together."""
-    import json
-
-    from gearmesh.data.datasets import open_dataset
-    from gearmesh.data.writing import write_text
-    from gearmesh.reproduction.mechanisms import files, tables
-
-    letters = _mechanisms(study).by_letter
-    _remove_other_letters(places, letters)
-    found = [places.orbits(letter) for letter in letters]
-    made = tables.joined(open_dataset(dataset) for dataset, _ in found)
-    files.write(places.branches, made, study, "branches of orbits")
-    rows = [row for _, points in found for row in json.loads(points.read_text(encoding="utf-8"))]
-    rows.sort(key=lambda row: "parameters" in row)
-    write_text(places.special_points, json.dumps(rows, indent=1) + "\n")
+        rows_without += tables.rows(name, again, WITHOUT_SUPPORTS)
+    files.write(places.branches, tables.joined(made), study, "branches of orbits")
+    write_text(places.special_points, json.dumps([*rows, *rows_without], indent=1) + "\n")
     return [places.branches, places.special_points]
 
 
@@ -129,11 +111,3 @@ def why(study: Study, places: Places) -> list[Path]:
 def _mechanisms(study: Study) -> Mechanisms:
     assert study.plan.mechanisms is not None  # without them there are no such rules
     return study.plan.mechanisms
-
-
-def _remove_other_letters(places: Places, letters: Collection[str]) -> None:
-    """Remove what is left of letters that the study had before."""
-    orbits, manifests = places.orbits("x")[0].parent, places.manifest("x").parent
-    for file in (*orbits.glob("*"), *manifests.glob("orbits-*")):
-        if file.stem.rpartition("-")[2] not in letters:
-            file.unlink()

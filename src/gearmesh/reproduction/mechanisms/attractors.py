@@ -26,6 +26,10 @@ from gearmesh.study.pair import Pair
 EVERY = 16
 """Runs from other initial states begin at every sixteenth ν_s of a study."""
 
+MOST_PERIODS = 2
+"""Longest period of the orbits that are carried over to another pair."""
+
+_SPACING = 8  # points of a branch from one orbit that is carried over to the next
 _NEAR = 0.1  # difference of extremes from those between two points of a branch, in y_st
 _DECIMALS = 5  # of extremes, in y_st
 _AT = 1e-9  # distance in ν_s of a point that is at the frequency
@@ -77,6 +81,26 @@ def reached(pair: Pair, variant: str, nus: np.ndarray) -> list[Orbit]:
     return [Orbit(pair, chosen, ends[name].problem.nu, ends[name]) for name in sorted(ends)]
 
 
+def carried_over(found: Iterable[Branch], pair: Pair) -> list[Orbit]:
+    """Return stable orbits of another pair that are close to orbits on the branches of this one.
+
+    Newton's method begins at every eighth point of each branch of at most `MOST_PERIODS` periods.
+    """
+    ends = []
+    for branch in found:
+        if branch.orbit.periods > MOST_PERIODS:
+            continue
+        for near in branch.found.orbits[::_SPACING]:
+            problem = pair.problem(branch.orbit.variant, near.problem.nu)
+            try:
+                orbit = orbits.correct(problem, near.state, near.periods)
+            except NoOrbit:
+                continue
+            if orbit.stable:
+                ends.append(Orbit(pair, branch.orbit.variant, problem.nu, orbit))
+    return ends
+
+
 def _name(orbit: orbits.Orbit) -> tuple[float, ...]:
     """Return the numbers by which runs that end on the same orbit are told."""
     extremes = (round(value, _DECIMALS) for value in (orbit.y_max, orbit.y_min))
@@ -97,15 +121,29 @@ def further(known: Iterable[Branch], ends: Iterable[Orbit], limits: Range) -> It
         orbit = waiting.pop(0)
         if any(holds(branch, orbit) for branch in found):
             continue
-        try:
-            branch = follow(orbit, "nu", limits)
-        except NoOrbit:
+        branch = _followed(orbit, limits)
+        if branch is None:
             continue
         found.append(branch)
         waiting[:0] = [
             point.orbit for point in branch.special if point.orbit.periods < orbit.periods
         ]
         yield branch
+
+
+def _followed(orbit: Orbit, limits: Range) -> Branch | None:
+    """Follow an orbit from the first of its mesh periods from which that succeeds.
+
+    Rounding decides whether every special point can be located, so another state may succeed.
+    """
+    own = orbit.reduced
+    for state in own.points:
+        try:
+            begun = replace(orbit, found=orbits.correct(own.problem, state, own.periods))
+            return follow(begun, "nu", limits)
+        except NoOrbit:
+            continue
+    return None
 
 
 def holds(branch: Branch, orbit: Orbit) -> bool:
@@ -129,10 +167,17 @@ def holds(branch: Branch, orbit: Orbit) -> bool:
             if np.abs(height - extremes).max() > _NEAR:
                 continue
             here, there = found.orbits[i].state, found.orbits[i + 1].state
-            try:
-                near = orbits.correct(wanted.problem, here + share * (there - here), orbit.periods)
-            except NoOrbit:
-                continue
-            if np.abs(np.array([near.y_max, near.y_min]) - extremes).max() < SAME:
+            # Neighbouring states may belong to different mesh periods of an orbit.
+            between = here + share * (there - here)
+            if any(_leads_to(wanted, state) for state in (between, here, there)):
                 return True
     return False
+
+
+def _leads_to(orbit: orbits.Orbit, state: np.ndarray) -> bool:
+    """Return whether Newton's method leads from a state to an orbit, in any of its periods."""
+    try:
+        found = orbits.correct(orbit.problem, state, orbit.periods)
+    except NoOrbit:
+        return False
+    return max(abs(found.y_max - orbit.y_max), abs(found.y_min - orbit.y_min)) < SAME

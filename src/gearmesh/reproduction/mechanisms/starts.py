@@ -6,18 +6,14 @@ contact and the resonant orbit with contact loss exist side by side.
 
 from collections.abc import Iterable, Sequence
 from dataclasses import replace
-from itertools import product
 
 import numpy as np
 import xarray as xr
 
 from gearmesh.interface.lengths import with_lengths
-from gearmesh.model.problem import Problem, State
+from gearmesh.model.problem import Problem
 from gearmesh.model.variants import variant
-from gearmesh.solvers.response import Response
-from gearmesh.solvers.simulation import simulate
 from gearmesh.study.pair import Pair
-from gearmesh.study.reading.schema import of_wheels
 
 VARIANT = "c-lubricant"
 
@@ -61,17 +57,18 @@ def basins(pair: Pair, branches: xr.Dataset, resolution: int) -> xr.Dataset:
     resolution : int
         Starts along each axis.
     """
+    # numba is loaded at the first run: code that only reads results imports this module, too.
+    from gearmesh.dynamics.starts import initial_states
+    from gearmesh.solvers.reduced.ensembles import laws_of, measure
+
     heights, rates = np.linspace(*HEIGHTS, resolution), np.linspace(*RATES, resolution)
-    rest = -sum(pair.stiffness_mean / bearing for bearing in of_wheels(pair.bearing_stiffness))
-    states = [State(float(y), float(v), rest, 0.0) for y, v in product(heights, rates)]
-    runs = [
-        replace(problem, initial_state=state)
-        for problem in _problems(pair, BASINS_AT, REVOLUTIONS)
-        for state in states
-    ]
+    problems = _problems(pair, BASINS_AT)
+    states = np.concatenate([initial_states(problem, heights, rates) for problem in problems])
+    laws = np.repeat(laws_of(problems, pair.tolerance), resolution**2)
+    teeth = problems[0].teeth
+    measured = measure(laws, states, REVOLUTIONS * teeth, teeth)
     shape = len(BASINS_AT), resolution, resolution
-    responses = simulate(runs, pair.tolerance, estimate_errors=False)
-    high, low = (np.reshape([_of(one, name) for one in responses], shape) for name in _EXTREMES)
+    high, low = (measured[name].reshape(shape) for name in _EXTREMES)
     dataset = with_lengths(
         {
             "y_max": (("nu", "y", "v"), high, "maximum of y in the last revolution"),
@@ -115,7 +112,7 @@ def resonant_orbit(branches: xr.Dataset, nu: float) -> tuple[float, float]:
 
 
 def phases(pair: Pair, resolution: int) -> xr.Dataset:
-    """Return what becomes of the paper's start at each starting phase, over ν_s.
+    """Return what becomes of the study's start at each starting phase, over ν_s.
 
     Parameters
     ----------
@@ -124,25 +121,25 @@ def phases(pair: Pair, resolution: int) -> xr.Dataset:
     resolution : int
         Starting phases, evenly spaced over the mesh period.
     """
+    from gearmesh.solvers.reduced.ensembles import laws_of, measure
+
     count = round((PHASES_TO - PHASES_FROM) / PHASES_STEP) + 1
     nus = np.round(np.linspace(PHASES_FROM, PHASES_TO, count), 10)
     starts = np.arange(resolution) / resolution
-    begun = _problems(pair, nus, CHECKED_AFTER[0])
-    runs = [replace(one, initial_phase=float(phase)) for one in begun for phase in starts]
-    measured = []
-    done = 0
+    problems = [
+        replace(problem, initial_phase=float(phase))
+        for problem in _problems(pair, nus)
+        for phase in starts
+    ]
+    laws, teeth = laws_of(problems, pair.tolerance), problems[0].teeth
+    states, done, found = laws["start"], 0, []
     for revolutions in CHECKED_AFTER:
         # A run goes on from its end: whole revolutions leave the mesh phase as it is.
-        runs = [replace(one, revolutions=revolutions - done) for one in runs]
-        responses = simulate(runs, pair.tolerance, estimate_errors=False)
-        measured.append([[_of(one, name) for name in _MEASURED] for one in responses])
-        runs = [
-            replace(one, initial_state=response.final_state)
-            for one, response in zip(runs, responses, strict=True)
-        ]
-        done = revolutions
-    shape = len(CHECKED_AFTER), count, resolution, len(_MEASURED)
-    high, loss = np.moveaxis(np.reshape(measured, shape), -1, 0)
+        measured = measure(laws, states, (revolutions - done) * teeth, teeth)
+        found.append((measured["y_max"], measured["loss_time"] / (teeth * laws["period"])))
+        states, done = measured["final"], revolutions
+    shape = len(CHECKED_AFTER), 2, count, resolution
+    high, loss = np.moveaxis(np.reshape(found, shape), 1, 0)
     axes = "revolutions", "nu", "phase"
     dataset = with_lengths({"y_max": (axes, high, "maximum of y in the last revolution")}, pair)
     stated = {"units": "1", "long_name": "share of contact loss in the last revolution"}
@@ -160,18 +157,8 @@ def phases(pair: Pair, resolution: int) -> xr.Dataset:
     return dataset
 
 
-_MEASURED = ("y_max", "contact_loss_fraction")
-
-
-def _problems(pair: Pair, nus: Iterable[float], revolutions: int) -> list[Problem]:
-    chosen = variant(VARIANT)
-    one = pair.replace(revolutions=revolutions, kept_revolutions=1)
-    return [one.problem(chosen, float(nu)) for nu in nus]
-
-
-def _of(response: Response, name: str) -> float:
-    value = getattr(response, name)
-    return float("nan") if value is None else float(value)
+def _problems(pair: Pair, nus: Iterable[float]) -> list[Problem]:
+    return [pair.problem(variant(VARIANT), float(nu)) for nu in nus]
 
 
 def _frequencies(nus: Sequence[float] | np.ndarray) -> tuple[str, np.ndarray, dict[str, str]]:

@@ -5,10 +5,8 @@ from collections.abc import Sequence
 import numpy as np
 import xarray as xr
 
-from gearmesh.dynamics.sweeps import run_chains
 from gearmesh.interface.lengths import with_lengths
 from gearmesh.model.variants import Variant, variant
-from gearmesh.solvers.response import Response
 from gearmesh.study.pair import Pair
 
 DWELL = 20
@@ -96,23 +94,26 @@ def _grid(step: float) -> np.ndarray:
 
 
 def _both_ways(pair: Pair, variants: Sequence[Variant], nus: np.ndarray) -> np.ndarray:
-    """Return y_max and y_min in y_st, shape (variant, direction, nu, 2), by ascending nu."""
-    one = pair.replace(revolutions=DWELL, kept_revolutions=1)
-    chains = [
-        [one.problem(chosen, float(nu)) for nu in nus[::order]]
-        for chosen in variants
-        for order in (1, -1)
-    ]
-    runs = run_chains(chains, pair.tolerance, estimate_errors=False)
-    found = np.array([[_extremes_of(run) for run in chain] for chain in runs])
-    found[1::2] = found[1::2, ::-1]
-    return found.reshape(len(variants), 2, len(nus), 2)
+    """Return y_max and y_min in y_st, shape (variant, direction, nu, 2), by ascending nu.
 
+    Each run starts from the end of the run before it, or as a case does if that run failed.
+    """
+    # numba is loaded at the first run: code that only reads results imports this module, too.
+    from gearmesh.solvers.reduced.ensembles import laws_of, measure
 
-def _extremes_of(run: Response) -> tuple[float, float]:
-    if run.y_max is None or run.y_min is None:
-        return np.nan, np.nan
-    return run.y_max, run.y_min
+    cases = [pair.problem(chosen, float(nu)) for chosen in variants for nu in nus]
+    upwards = laws_of(cases, pair.tolerance).reshape(len(variants), len(nus))
+    laws = np.concatenate([upwards, upwards[:, ::-1]])
+    teeth = cases[0].teeth
+    starts = laws["start"]
+    states, found = starts[:, 0], np.empty((*laws.shape, 2))
+    for step in range(len(nus)):
+        measured = measure(laws[:, step], states, DWELL * teeth, teeth)
+        found[:, step] = np.column_stack([measured["y_max"], measured["y_min"]])
+        failed, following = np.isnan(measured["y_max"]), min(step + 1, len(nus) - 1)
+        states = np.where(failed[:, None], starts[:, following], measured["final"])
+    up, down = np.split(found, 2)
+    return np.stack([up, down[:, ::-1]], axis=1)
 
 
 def _extremes(found: np.ndarray, axes: tuple[str, ...], pair: Pair) -> xr.Dataset:

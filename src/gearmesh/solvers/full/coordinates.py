@@ -56,12 +56,20 @@ def embedding(problem: Problem, sampled: bool = False) -> np.ndarray:
     return found
 
 
-def projected(six: np.ndarray, columns: np.ndarray) -> np.ndarray:
-    """Return the coordinates and, from the seventh place, the rates that are integrated."""
+def projected(sixes: np.ndarray, columns: np.ndarray) -> np.ndarray:
+    """Return the coordinates that are integrated and, from the seventh place, their rates.
+
+    Parameters
+    ----------
+    sixes : ndarray, shape (..., 12)
+        Six coordinates, then their rates.
+    columns : ndarray, shape (6, n)
+        Of `embedding`.
+    """
     n = columns.shape[1]
-    inverse = (columns / np.sum(columns**2, axis=0)).T
-    found = np.zeros(12)
-    found[:n], found[6 : 6 + n] = inverse @ six[:6], inverse @ six[6:]
+    inverse = columns / np.sum(columns**2, axis=0)
+    found = np.zeros(sixes.shape)
+    found[..., :n], found[..., 6 : 6 + n] = sixes[..., :6] @ inverse, sixes[..., 6:] @ inverse
     return found
 
 

@@ -43,16 +43,41 @@ _EXTREMA_PER_PERIOD = 64
 _MOST_TURNS = 10_000
 
 
-def _build_run(key: str, cache: bool) -> Callable[..., bool]:
+def _build_runs(key: str, cache: bool) -> Callable[..., int]:
+    """Return the function that integrates runs, and returns the number of the first not over.
+
+    It begins with the run of number `first`. Its other arguments are those of `kernel.run`: what
+    all runs share, and arrays with a row for each run.
+    """
+
     @njit(cache=cache, nogil=True)
-    def compiled(*arguments):  # type: ignore[no-untyped-def]
+    def compiled(stated, runs, first, per_period, most_turns, workspace):  # type: ignore[no-untyped-def]
         key  # noqa: B018 (see persistent)
-        return kernel.run(*arguments)
+        states, modes, strobes, extrema, samples, summaries = runs
+        turns = 0
+        for i in range(first, len(states)):
+            begun = summaries[i].steps
+            over = kernel.run(
+                *stated,
+                states[i],
+                modes[i : i + 1],
+                strobes[i],
+                extrema[i],
+                samples[i],
+                per_period,
+                summaries[i : i + 1],
+                most_turns - turns,
+                workspace,
+            )
+            if not over:
+                return i
+            turns += summaries[i].steps - begun
+        return len(states)
 
     return compiled
 
 
-_compiled_run = persistent(_build_run)
+_compiled_runs = persistent(_build_runs)
 
 
 def integrate(
@@ -83,85 +108,42 @@ def integrate(
     Response
         A run that fails has a status other than ``"ok"``.
     """
-    run = _Run(problem, samples_per_period > 0)
+    runs = Runs(problem, samples_per_period > 0)
     companion = None
     if estimate_errors:
-        run.integrate(tolerance * LOOSENING, order, displacement=tolerance)
-        companion = Companion(run.summary, run.strobes)
+        runs.integrate(tolerance * LOOSENING, order, displacement=tolerance)
+        companion = Companion(runs.summaries[0], runs.strobes[0])
     room = _EXTREMA_PER_PERIOD * problem.kept_periods
-    run.integrate(tolerance, order, samples_per_period, room)
-    found = run.summary["extrema"]
+    runs.integrate(tolerance, order, samples_per_period, room)
+    found = runs.summaries[0]["extrema"]
     if found > room:
-        run.integrate(tolerance, order, samples_per_period, found)
+        runs.integrate(tolerance, order, samples_per_period, found)
+    summary = runs.summaries[0]
     return assemble(
         problem,
-        run.summary,
-        run.strobes,
-        run.extrema[:found],
-        run.final_state(),
+        summary,
+        runs.strobes[0],
+        runs.extrema[0, :found],
+        runs.final_state(),
         companion,
         tolerance,
-        _samples(run.samples, run.summary["extremes"]) if samples_per_period else None,
-        run.rotation_drift,
-        float(run.summary["least_contact_force"]),
+        _samples(runs.samples[0], summary["extremes"]) if samples_per_period else None,
+        runs.rotation_drift(),
+        float(summary["least_contact_force"]),
     )
 
 
 def steps_of(problem: Problem, tolerance: float) -> Iterator[Step]:
     """Yield the steps of a run; they end early if it cannot be integrated."""
-    return _Run(problem, False).steps(tolerance)
+    return Runs(problem, False).steps(tolerance)
 
 
-class Propagation:
-    """Integration of one problem over some mesh periods, from any starting state.
+class Runs:
+    """Runs of a problem that can be integrated several times, with any tolerance.
 
-    Parameters
-    ----------
-    problem : Problem
-        Its initial state and its number of revolutions are ignored.
-    periods : int
-        Number of mesh periods to integrate, from t = 0.
-    tolerance : float
-    share : float
-        Share of each mesh period that is integrated. If `periods` is 1, the motion ends there.
-    """
-
-    def __init__(
-        self, problem: Problem, periods: int, tolerance: float, share: float = 1.0
-    ) -> None:
-        self._run = _Run(problem.over_periods(periods, 0, None), False, share)
-        self._tolerance = tolerance
-
-    def end(self, six: np.ndarray, first: int = 0, last: int | None = None) -> np.ndarray:
-        """Return the coordinates and rates at the end of the motion, shape (12,).
-
-        Parameters
-        ----------
-        six : ndarray, shape (12,)
-            The six coordinates at the start, then their rates.
-        first, last : int
-            The motion starts after `first` of the mesh periods and ends after `last`; by default
-            after all.
-
-        Raises
-        ------
-        NoOrbit
-            If it cannot be integrated.
-        """
-        self._run.start = six
-        self._run.part = first, self._run.problem.periods if last is None else last
-        self._run.integrate(self._tolerance)
-        if self._run.summary["status"] != OK:
-            status = STATUSES[self._run.summary["status"]]
-            raise NoOrbit(f"the motion cannot be integrated over the period: {status}")
-        return self._run.all_six()
-
-
-class _Run:
-    """A run that can be integrated several times, from any start and with any tolerance.
-
-    Each mesh period is cut off after a `share` of it. `part` says between which mesh periods it is
-    integrated: by default over all.
+    There is one run from the problem's own initial state, or one from each of `starts`, of shape
+    (m, 12). Each mesh period is cut off after a `share` of it. `part` says between which mesh
+    periods the runs are integrated: by default over all.
     """
 
     def __init__(self, problem: Problem, sampled: bool, share: float = 1.0) -> None:
@@ -170,13 +152,15 @@ class _Run:
         kinds, variants = kinds_of_period(problem)
         found = recurrences(problem, kinds, sampled)
         self._case = _case(problem, self.embedding.shape[1])
-        self._arguments = (
+        self._stated = (
+            self._case,
             _segments(problem, share),
             variants,
             (found.numbers, found.branches),
         )
         self._series = np.zeros((found.height + TABLE_ROWS + 1, WIDTH))
-        self.start = np.concatenate(start(problem))
+        self._mode = _mode(problem)
+        self.starts = np.concatenate(start(problem))[None]
         self.part = 0, problem.periods
 
     def integrate(
@@ -187,24 +171,53 @@ class _Run:
         room: int = 0,
         displacement: float = 0.0,
     ) -> None:
-        """Integrate the run from its start to its end.
+        """Integrate the runs from start to end.
 
-        There is `room` for that many extrema; further ones are only counted. `displacement`
-        displaces wheel 3 at the start.
+        There is `room` for that many extrema of each; further ones are only counted.
+        `displacement` displaces wheel 3 at the start.
         """
         self._begin(tolerance, order, samples_per_period, room, displacement)
-        while not self._go_on(samples_per_period, _MOST_TURNS):
-            pass
+        over = 0
+        while over < len(self.starts):
+            over = self._go_on(over, samples_per_period, _MOST_TURNS)
+
+    def ends(
+        self, starts: np.ndarray, tolerance: float, first: int = 0, last: int | None = None
+    ) -> np.ndarray:
+        """Return the coordinates and rates at the ends of runs, shape (m, 12).
+
+        Parameters
+        ----------
+        starts : ndarray, shape (m, 12)
+            The six coordinates at the start of each run, then their rates.
+        tolerance : float
+        first, last : int
+            The runs start after `first` of the mesh periods and end after `last`; by default after
+            all.
+
+        Raises
+        ------
+        NoOrbit
+            If one cannot be integrated.
+        """
+        self.starts = starts
+        self.part = first, self.problem.periods if last is None else last
+        self.integrate(tolerance)
+        for status in self.summaries["status"]:
+            if status != OK:
+                reason = STATUSES[status]
+                raise NoOrbit(f"the motion cannot be integrated over the period: {reason}")
+        return self.all_six()
 
     def steps(self, tolerance: float) -> Iterator[Step]:
-        """Integrate the run, and yield its steps."""
+        """Integrate the first run, and yield its steps."""
         self._begin(tolerance, None, 0, 0, 0.0)
-        mode, size = self.mode[0], int(self._case["order"][0]) + 1
+        mode, size = self.modes[0], int(self._case["order"][0]) + 1
         taken, reached = 0, 0.0
-        while not self._go_on(0, 1):
-            if self.summary["steps"] == taken:
+        while self._go_on(0, 0, 1) == 0:
+            if self.summaries[0]["steps"] == taken:
                 continue
-            taken, start = int(self.summary["steps"]), reached
+            taken, start = int(self.summaries[0]["steps"]), reached
             reached = float(mode["period"] * self.problem.period + mode["time"])
             place = int(mode["period"]), int(mode["segment"])
             rows = (self._series[row, :size].copy() for row in (Y, GAP))
@@ -218,47 +231,37 @@ class _Run:
         room: int,
         displacement: float,
     ) -> None:
+        m = len(self.starts)
         self._case["tolerance"] = tolerance
         self._case["order"] = order or suitable_order(tolerance)
-        summaries = np.zeros(1, SUMMARY)
-        summaries["y_max"], summaries["y_min"] = -np.inf, np.inf
-        summaries["least_contact_force"] = np.inf
-        summaries["extremes"] = np.inf, -np.inf
-        self.summary = summaries[0]
-        start = self.start.copy()
-        start[ROTATION_3] += displacement
-        self.state = projected(start, self.embedding)
-        self.mode = _mode(self.problem)
-        self.mode["period"], self._case["periods"] = self.part
-        self.strobes = np.zeros((self.problem.periods + 1, 2))
-        self.extrema = np.zeros(room, EXTREMUM)
-        self.samples = np.zeros(samples_per_period * self.problem.kept_periods, SAMPLE)
-        self._summaries = summaries
+        self.summaries = np.zeros(m, SUMMARY)
+        self.summaries["y_max"], self.summaries["y_min"] = -np.inf, np.inf
+        self.summaries["least_contact_force"] = np.inf
+        self.summaries["extremes"] = np.inf, -np.inf
+        starts = self.starts.copy()
+        starts[:, ROTATION_3] += displacement
+        self.states = projected(starts, self.embedding)
+        self.modes = np.repeat(self._mode, m)
+        self.modes["period"], self._case["periods"] = self.part
+        self.strobes = np.zeros((m, self.problem.periods + 1, 2))
+        self.extrema = np.zeros((m, room), EXTREMUM)
+        self.samples = np.zeros((m, samples_per_period * self.problem.kept_periods), SAMPLE)
 
-    def _go_on(self, samples_per_period: int, most_turns: int) -> bool:
-        """Continue the run by some steps, and return whether it is over."""
-        over = _compiled_run(
-            self._case,
-            *self._arguments,
-            self.state,
-            self.mode,
-            self.strobes,
-            self.extrema,
-            self.samples,
-            samples_per_period,
-            self._summaries,
-            most_turns,
-            self._series,
+    def _go_on(self, first: int, samples_per_period: int, most_turns: int) -> int:
+        """Continue the runs by some steps, and return how many are over."""
+        runs = self.states, self.modes, self.strobes, self.extrema, self.samples, self.summaries
+        over = _compiled_runs(
+            self._stated, runs, first, samples_per_period, most_turns, self._series
         )
         raise_failures()
         return over
 
     def final_state(self) -> State:
-        """Return the state at the end of the run."""
-        problem, mode = self.problem, self.mode[0]
-        six = self.all_six()
+        """Return the state at the end of the first run."""
+        problem, mode = self.problem, self.modes[0]
+        six = self.all_six()[0]
         b, b_rate = (six[[Y_3, 6 + Y_3]] - six[[Y_2, 6 + Y_2]]).tolist()
-        y, v = self.strobes[-1].tolist()
+        y, v = self.strobes[0, -1].tolist()
         branches = Branches(
             problem=replace(problem, initial_state=None),
             regime=int(mode["regime"]),
@@ -273,17 +276,16 @@ class _Run:
         return State(y, v, b, b_rate, tuple(six.tolist()), periods, branches)
 
     def all_six(self) -> np.ndarray:
-        """Return the six coordinates and their rates; those that are not integrated are 0."""
+        """Return the six coordinates and rates of each run; those not integrated are 0."""
         n = self.embedding.shape[1]
-        both = self.embedding @ self.state[:n], self.embedding @ self.state[6 : 6 + n]
-        return np.concatenate(both)
+        both = (self.states[:, i : i + n] @ self.embedding.T for i in (0, 6))
+        return np.concatenate(list(both), axis=1)
 
-    @property
     def rotation_drift(self) -> float:
-        """Change of (phi_3 - phi_2)/2 over the run, in rad; NaN if it is not integrated."""
+        """Return how (phi_3 - phi_2)/2 changes over the first run; NaN if it is not integrated."""
         if self.embedding[ROTATION_3, 0] != 1.0:
             return np.nan
-        gained = self.all_six() - self.start
+        gained = self.all_six()[0] - self.starts[0]
         wheel_3, wheel_2 = self.problem.both_wheels
         turned_3 = gained[ROTATION_3] / wheel_3.base_radius
         return 0.5 * float(turned_3 - gained[ROTATION_2] / wheel_2.base_radius)

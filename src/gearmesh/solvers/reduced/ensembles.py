@@ -11,12 +11,13 @@ from dataclasses import replace
 
 import numpy as np
 
+from gearmesh.errors import InputError
 from gearmesh.model.contact import regime_of
 from gearmesh.model.problem import Problem
 from gearmesh.solvers.lanes.operations import WIDEST
 from gearmesh.solvers.reduced.measures import SAMPLED
 from gearmesh.solvers.reduced.records import RUN, SUMMARY
-from gearmesh.solvers.reduced.runs import run_row, sweep_all
+from gearmesh.solvers.reduced.runs import is_reducible, run_row, sweep_all
 from gearmesh.solvers.response import EXTREMUM, OK
 
 TOLERANCE = 1e-10
@@ -28,7 +29,18 @@ _NO_SAMPLES = np.empty((0, SAMPLED, WIDEST))
 
 
 def laws_of(problems: Sequence[Problem], tolerance: float = TOLERANCE) -> np.ndarray:
-    """Return the laws of reducible problems as `advance` takes them, an array of `RUN`."""
+    """Return the laws of reducible problems as `advance` takes them, an array of `RUN`.
+
+    Raises
+    ------
+    InputError
+        If only the general solver serves one of them.
+    """
+    if not all(map(is_reducible, problems)):
+        raise InputError(
+            "pair: found terms that only the general solver knows; allowed are those of the "
+            "reduced system, because many runs are integrated together"
+        )
     return np.array([run_row(problem, tolerance, 0) for problem in problems]).view(RUN)[:, 0]
 
 
@@ -49,16 +61,8 @@ def advance(laws: np.ndarray, states: np.ndarray, periods: int | np.ndarray) -> 
     ndarray, shape (n, 4)
         Not-a-number if a run fails.
     """
-    if len(states) <= _CHUNK:
-        return trace(laws, states, periods)[0]
-    chunks = [slice(first, first + _CHUNK) for first in range(0, len(states), _CHUNK)]
-    several, lengths = len(laws) > 1, np.broadcast_to(periods, len(states))
-
-    def of(chunk: slice) -> np.ndarray:
-        return trace(laws[chunk] if several else laws, states[chunk], lengths[chunk])[0]
-
-    with ThreadPoolExecutor(os.cpu_count()) as threads:
-        return np.concatenate(list(threads.map(of, chunks)))
+    ends: np.ndarray = measure(laws, states, periods)["final"]
+    return ends
 
 
 def trace(
@@ -72,18 +76,58 @@ def trace(
     strobes : ndarray, shape (n, periods + 1, 2)
         y and y' at the boundaries of the mesh periods.
     """
+    measured, strobes = _sweep(laws, states, periods, 0)
+    return measured["final"], strobes
+
+
+def measure(
+    laws: np.ndarray, states: np.ndarray, periods: int | np.ndarray, kept: int = 0
+) -> np.ndarray:
+    """Return what is measured on the last mesh periods of runs, and their ends.
+
+    Parameters
+    ----------
+    laws, states, periods
+        As for `advance`.
+    kept : int
+        Mesh periods that are measured, at most `periods`.
+
+    Returns
+    -------
+    ndarray of `SUMMARY`, shape (n,)
+        Times and integrals are those of the whole kept time. If a run fails, its extremes, times
+        and end are not-a-number.
+    """
+    if len(states) <= _CHUNK:
+        return _sweep(laws, states, periods, kept)[0]
+    chunks = [slice(first, first + _CHUNK) for first in range(0, len(states), _CHUNK)]
+    several, lengths = len(laws) > 1, np.broadcast_to(periods, len(states))
+
+    def of(chunk: slice) -> np.ndarray:
+        return _sweep(laws[chunk] if several else laws, states[chunk], lengths[chunk], kept)[0]
+
+    with ThreadPoolExecutor(os.cpu_count()) as threads:
+        return np.concatenate(list(threads.map(of, chunks)))
+
+
+def _sweep(
+    laws: np.ndarray, states: np.ndarray, periods: int | np.ndarray, kept: int
+) -> tuple[np.ndarray, np.ndarray]:
+    """Return the summaries and the stroboscopic points of runs."""
     runs = np.repeat(laws, len(states)) if len(laws) == 1 else laws.copy()
     runs["most_steps"] *= np.maximum(periods, 1) / runs["periods"]
-    runs["periods"] = runs["first_kept"] = periods
+    runs["periods"], runs["first_kept"] = periods, periods - kept
     runs["start"] = states
     runs["regime"] = regime_of(states[:, 0], runs["backlash"])
     runs["direction"] = 0.0
     summaries = np.zeros(len(runs), SUMMARY)
+    summaries["y_max"], summaries["y_min"] = -np.inf, np.inf
     strobes = np.empty((len(runs), int(np.max(periods, initial=0)) + 1, 2))
     sweep_all(WIDEST, runs, summaries, strobes, _NO_EXTREMA, _NO_SAMPLES, 0)
-    ends = summaries["final"]
-    ends[summaries["status"] != OK] = np.nan
-    return ends, strobes
+    failed = summaries["status"] != OK
+    for name in ("y_max", "y_min", "square_integral", "loss_time", "inverse_time", "final"):
+        summaries[name][failed] = np.nan
+    return summaries, strobes
 
 
 def advance_to_phase(problem: Problem, phases: np.ndarray, states: np.ndarray) -> np.ndarray:

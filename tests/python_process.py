@@ -1,8 +1,8 @@
-"""Runs of Snakemake, each in its own process, without a new import of Snakemake.
+"""Runs of Python, each in its own process, without a new import of Snakemake and other packages.
 
-Importing Snakemake takes longer than planning a study. A server has imported it, with the packages
-that the Snakefile needs, and nothing of gearmesh. Each run is a fork of that server with its own
-folder, environment and process group. It imports gearmesh from the copied project.
+Importing them takes longer than planning a study, or than a run of one case. A server has imported
+them, and nothing of gearmesh. Each run is a fork of that server with its own folder, environment
+and process group. It imports gearmesh from the copied project.
 """
 
 import contextlib
@@ -24,6 +24,7 @@ SERVER.set_forkserver_preload(
     [
         *("snakemake.cli", "snakemake.report.html_reporter", "snakemake.storage"),
         *("docutils.core", "jinja2", "pydantic", "requests", "scipy.io", "smart_open", "yte"),
+        *("matplotlib.pyplot", "netCDF4", "numba", "pint", "scipy.optimize", "xarray"),
         "snakemake_ready",
     ]
 )
@@ -32,7 +33,7 @@ PATIENCE = 280
 
 
 class Run:
-    """A run of Snakemake.
+    """A run of Python.
 
     Parameters
     ----------
@@ -41,17 +42,17 @@ class Run:
     environment : mapping
         Its environment variables; `PYTHONPATH` is where its modules come from.
     arguments : sequence of str
-        Its command line.
+        What stands behind `python`: `-m` and a module, or a file, and their arguments.
     """
 
     def __init__(
         self, folder: Path, environment: Mapping[str, str], arguments: Sequence[str]
     ) -> None:
         self._output = tempfile.NamedTemporaryFile("r", encoding="utf-8")  # noqa: SIM115
-        with patch.dict(os.environ, PYTHONPATH=str(Path(__file__).parent)):
+        with patch.dict(os.environ, PYTHONPATH=str(Path(__file__).parent), MPLBACKEND="Agg"):
             ensure_running()
         given = (folder, dict(environment), arguments, self._output.name)
-        self._process = SERVER.Process(target=_snakemake, args=given)
+        self._process = SERVER.Process(target=_python, args=given)
         self._process.start()
 
     def wait_for(self, condition: Callable[[], object]) -> object:
@@ -79,7 +80,7 @@ class Run:
         )
 
 
-def _snakemake(
+def _python(
     folder: Path, environment: Mapping[str, str], arguments: Sequence[str], output: str
 ) -> None:
     os.setsid()
@@ -93,5 +94,9 @@ def _snakemake(
         os.dup2(printed, stream.fileno())
     sys.path[:0] = [str(folder), *environment["PYTHONPATH"].split(os.pathsep)]
     sys.dont_write_bytecode = False  # the server has it from whoever runs the tests
-    sys.argv = ["snakemake", *arguments]
-    runpy.run_module("snakemake", run_name="__main__")
+    if arguments[0] == "-m":
+        sys.argv = [*arguments[1:]]
+        runpy.run_module(arguments[1], run_name="__main__")
+    else:
+        sys.argv = [*arguments]
+        runpy.run_path(arguments[0], run_name="__main__")
