@@ -1,7 +1,7 @@
 """Simulate one run, or sweep many."""
 
 import itertools
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from typing import Literal
 
@@ -11,12 +11,16 @@ import xarray as xr
 from gearmesh.data.labelled import final_state, grid_dataset, run_dataset
 from gearmesh.dynamics.sweeps import run_chains
 from gearmesh.errors import InputError
+from gearmesh.interface.parameters import number_of
 from gearmesh.interface.statements import (
     Start,
+    check_direction,
+    check_pair,
     read_frequencies,
     read_frequency,
     read_variant,
     read_variants,
+    several,
     with_settings,
 )
 from gearmesh.model.problem import Problem
@@ -26,6 +30,7 @@ from gearmesh.solvers.response import Response
 from gearmesh.study.alternatives import DECLARED
 from gearmesh.study.cases import Case
 from gearmesh.study.pair import Pair
+from gearmesh.study.reading.schema import shown
 from gearmesh.study.speeds import check_constant_speed, is_speed
 
 
@@ -86,6 +91,7 @@ def simulate(
     pair = with_settings(
         pair,
         None if isinstance(start, xr.Dataset) else start,
+        allowed="(y, dy/dtau_s), or the dataset of an earlier run",
         revolutions=revolutions,
         kept_revolutions=kept,
         samples_per_period=samples_per_period,
@@ -152,16 +158,16 @@ def sweep(
     >>> ds.y_max.sizes["nu"]
     11
     """
-    if direction not in (None, "up", "down"):
-        raise InputError(f"direction: found {direction!r}; allowed are 'up', 'down' and None")
+    check_pair(pair)
+    check_direction(direction)
     chosen, nus = read_variants(variants), read_frequencies(nu, pair)
     pair = with_settings(
         pair, start, revolutions=revolutions, kept_revolutions=kept, tolerance=tolerance
     )
-    over = over or {}
+    varied = _read_over(over)
     pairs = [
-        pair.replace(**dict(zip(over, values, strict=True)))
-        for values in itertools.product(*over.values())
+        pair.replace(**dict(zip(varied, values, strict=True)))
+        for values in itertools.product(*varied.values())
     ]
     for one in (pair, *pairs):
         check_constant_speed(one, "each run of a sweep")
@@ -176,9 +182,30 @@ def sweep(
     rows = [responses[chain][place] for chain, place in cells]
     states = [chains[chain][place] for chain, place in cells] if loads else None
     axes: dict[str, Sequence[object]] = {"variant": [variant.name for variant in chosen], "nu": nus}
-    axes |= {name: _axis(name, values, pair) for name, values in over.items()}
+    axes |= {name: _axis(name, values, pair) for name, values in varied.items()}
     dataset = grid_dataset(rows, pairs * (len(rows) // len(pairs)), axes, states)
-    return _described(dataset, pair, over)
+    return _described(dataset, pair, varied)
+
+
+def _read_over(over: object) -> dict[str, list[object]]:
+    """Return the parameters to vary with the list of their values."""
+    if over is None:
+        return {}
+    if not isinstance(over, Mapping):
+        raise InputError(
+            f"over: found {shown(over)}; allowed is a mapping of names to lists of values"
+        )
+    found: dict[str, list[object]] = {}
+    for name, values in over.items():
+        if not isinstance(name, str):
+            raise InputError(f"over: found the name {shown(name)}; allowed is a text")
+        listed = isinstance(values, Iterable) and not isinstance(values, str | Mapping)
+        found[name] = several(list(values) if isinstance(values, Iterator) else values)
+        if not listed or not found[name]:
+            raise InputError(
+                f"over: {name}: found {shown(values)}; allowed is a list of one value or more"
+            )
+    return found
 
 
 def _integrated(
@@ -205,20 +232,20 @@ def _integrated(
 def _check_speeds(nu: object, pairs: Sequence[Pair]) -> None:
     """Refuse speeds where a parameter that is varied gives each another ν_s."""
     if len({one.resonance_speed for one in pairs}) > 1:
-        for value in np.atleast_1d(np.asarray(nu)).tolist():
+        for value in several(nu):
             if is_speed(value):
                 raise InputError(
-                    f"nu: found {value!r}, but ν_s at a speed changes with a parameter in over; "
-                    "allowed are numbers ν_s"
+                    f"nu: found {shown(value)}, but ν_s at a speed changes with a parameter in "
+                    "over; allowed are numbers ν_s"
                 )
 
 
 def _axis(name: str, values: Sequence[object], pair: Pair) -> list[float]:
     """Return the values of a parameter in its unit, as an axis."""
-    found = [getattr(pair.replace(**{name: value}), name) for value in values]
-    for value in found:
+    found = [number_of(pair.replace(**{name: value}), name) for value in values]
+    for stated, value in zip(values, found, strict=True):
         if not isinstance(value, int | float):
-            raise InputError(f"over: {name}: found {value!r}; allowed are single numbers")
+            raise InputError(f"over: {name}: found {shown(stated)}; allowed are single numbers")
     return found
 
 
