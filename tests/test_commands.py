@@ -206,7 +206,8 @@ def test_settings_of_a_run_from_the_command_line(gearmesh, tmp_path):
 def test_sweep_writes_one_dataset(gearmesh, tmp_path):
     file = tmp_path / "sweep.nc"
     run = gearmesh(
-        *("sweep", "--variant", "c-material", "b-lubricant", "--nu", "0.6:0.65:0.01"),
+        *("sweep", "--variant", "c-material", "--variant", "b-lubricant"),
+        *("--nu", "0.6:0.65:0.01"),
         *("--direction", "down", "--revolutions", "2", "-o", file),
     )
     assert (run.returncode, run.stderr) == (0, "")
@@ -305,6 +306,12 @@ def test_compare_lists_what_differs(gearmesh, two_runs, tmp_path):
         ((*SWEEP, "--nu", "600 rpm:3000 rpm:0 rpm"), "step: found '0 rpm'; allowed is 1e-06 rpm"),
         ((*SWEEP, "--nu", "600 rpm:500 rpm:10 rpm"), "stop: found '500 rpm'; allowed is 600 rpm"),
         ((*SWEEP, "--nu", "600 rpm:1e9 rpm:10 rpm"), "stop: found '1e9 rpm'; ν_s = "),
+        ((*SWEEP, "--nu", "0.7", "--nu", "0.8"), "--nu: found twice; allowed is once"),
+        ((*SWEEP, "--nu", "0.7", "--variant", "b-both"), "--variant: found b-both twice"),
+        ((*SIMULATE, "-o", "x.nc", "--output", "y.nc"), "--output: found twice"),
+        (("orbit", *SIMULATE[1:], "--periods", "1", "--periods", "1"), "--periods: found twice"),
+        (("parameters", "--config", "a.yaml", "--config", "b.yaml"), "--config: found twice"),
+        (("parameters", "--set", "teeth=20", "--set", "teeth=30"), "teeth: found twice"),
         (("plot", "none.nc"), "none.nc: cannot be read: No such file"),
         (("plot", "config/paper.yaml"), "not a NetCDF file"),
         (("parameters", "--config", "."), "cannot be read"),
