@@ -133,6 +133,10 @@ def test_a_pair_cannot_be_changed_in_place(pair):
         ({"teeth": 2}, "teeth: found 2; out of range; allowed is 3 to 1000"),
         ({"contact_ratio": None}, "contact_ratio: found nothing"),
         ({"kept_revolutions": 6}, "kept_revolutions: found 6; allowed are at most the 5"),
+        (
+            {"revolutions": 40, "kept_revolutions": 40, "teeth": 1000, "samples_per_period": 256},
+            "kept_revolutions: found 40, which makes 10240000 samples (teeth × samples_per_period",
+        ),
         ({"static_deflection": None}, "static_deflection: missing; backlash is stated in y_st"),
     ],
 )

@@ -16,11 +16,29 @@ INTERRUPTED = 130
 OUT_OF_MEMORY = 1
 
 
+class _Once(argparse.Action):
+    """Store a value, and refuse a second one: argparse would drop the first without a word."""
+
+    def __call__(
+        self,
+        parser: argparse.ArgumentParser,
+        namespace: argparse.Namespace,
+        values: object,
+        option_string: str | None = None,
+    ) -> None:
+        given = namespace.__dict__.setdefault("given", set())
+        if self.dest in given:
+            raise InputError(f"{option_string}: found twice; allowed is once")
+        given.add(self.dest)
+        setattr(namespace, self.dest, values)
+
+
 class _Parser(argparse.ArgumentParser):
     """Parser that reports a wrong command line like all other bad input, and never guesses."""
 
     def __init__(self, **settings: object) -> None:
         super().__init__(allow_abbrev=False, **settings)  # type: ignore[arg-type]
+        self.register("action", None, _Once)
 
     def error(self, message: str) -> NoReturn:
         raise InputError(f"{message} (see {self.prog} --help)")
@@ -128,7 +146,11 @@ def _add_runs(commands: "argparse._SubParsersAction[_Parser]", pair: _Parser) ->
         "sweep", parents=[pair, run], help="integrate variants over mesh frequencies"
     )
     sweep.add_argument(
-        "--variant", required=True, nargs="+", help="one or several, see 'gearmesh variants'"
+        "--variant",
+        required=True,
+        nargs="+",
+        action="extend",
+        help="one or several, see 'gearmesh variants'; may be repeated",
     )
     sweep.add_argument(
         "--nu", required=True, metavar="START:STOP:STEP", help="mesh frequencies nu_s, or speeds"

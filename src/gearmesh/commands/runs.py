@@ -62,6 +62,9 @@ def simulate(options: argparse.Namespace) -> int:
 def sweep(options: argparse.Namespace) -> int:
     """Integrate variants over mesh frequencies and write one dataset."""
     chosen = [variant(name) for name in options.variant]
+    for name in options.variant:
+        if options.variant.count(name) > 1:
+            raise InputError(f"--variant: found {name} twice; allowed is once")
     pair = _pair(options)
     nus = _frequencies(options.nu, pair)
     replaces = check_output(options.output)

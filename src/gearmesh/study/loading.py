@@ -54,10 +54,12 @@ def load_study(path: str | Path, overrides: Iterable[str] = ()) -> Study:
         }
     except InputError as error:
         raise InputError(f"{path}: {error}") from None
-    changed = {}
+    changed: dict[str, str] = {}
     for text in overrides:
         key, value = _override(text)
-        for other in excluded_by({key: value}):
+        if key in changed:
+            raise InputError(f"--set {text}: {key}: found twice; allowed is once")
+        for other in excluded_by({key: value}) - {*changed}:
             statements.pop(other, None)
         statements[key] = Statement(value, reason="set on the command line")
         changed[key] = f"--set {text}"
