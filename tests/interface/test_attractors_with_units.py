@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+import xarray as xr
 
 import gearmesh as gm
 
@@ -18,6 +19,16 @@ def basins(pair):
     return gm.basins(
         pair, "b-material", 0.8, y=["-10 um", 0, "2 y_st"], v=[-3.0, 0, 3.0], phase=phases
     )
+
+
+def test_a_dataset_with_complex_multipliers_is_written_and_read_again(pair, basins, tmp_path):
+    found = gm.attractors(pair, "c-material", 0.7, starts=[(0, 0)])
+    how = {"engine": "netcdf4", "auto_complex": True}
+    for dataset in (found, basins):
+        dataset.to_netcdf(tmp_path / "found.nc", **how)
+        with xr.open_dataset(tmp_path / "found.nc", **how) as again:
+            assert again.identical(dataset)
+            assert again.multipliers.dtype == complex
 
 
 def test_labels_are_the_same_in_every_dataset(pair, basins):

@@ -97,6 +97,20 @@ def test_a_sweep_is_its_single_runs(pair):
     assert np.isnan(cell.extremum_y_rel[count:]).all()
 
 
+@pytest.mark.parametrize("direction", [None, "up"])
+@pytest.mark.parametrize(
+    ("name", "values"), [("tolerance", [1e-3, 1e-12]), ("samples_per_period", [4, 64])]
+)
+def test_a_sweep_over_a_setting_gives_each_run_its_own(pair, name, values, direction):
+    settings = {"revolutions": 1, "direction": direction, "loads": True}
+    found = gm.sweep(pair, "c-material", [0.9], over={name: values}, **settings).squeeze()
+    for i, value in enumerate(values):
+        one = gm.sweep(pair.replace(**{name: value}), "c-material", [0.9], **settings).squeeze()
+        for measured in ("y_max", "transmission_error_range"):
+            assert found[measured][i] == one[measured]
+    assert found.transmission_error_range[0] != found.transmission_error_range[1]
+
+
 @pytest.mark.parametrize("direction", ["up", "down"])
 def test_a_sweep_in_a_direction_goes_on_from_run_to_run(pair, direction):
     nu = [0.70, 0.72, 0.71]

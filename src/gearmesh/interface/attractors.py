@@ -65,7 +65,8 @@ def attractors(
         A label depends on the attractor alone, and so is the same in every dataset: the period and
         the stroboscopic point (y, dy/dτ_s) of greatest y at mesh phase 0, the middle of the C_max
         pulse, in static deflections; or the kind of a motion that is no orbit. Orbits are in the
-        order of period and y_max; the other kinds follow.
+        order of period and y_max; the other kinds follow. `multipliers` are complex, so
+        ``to_netcdf`` and ``xarray.open_dataset`` need ``engine="netcdf4", auto_complex=True``.
 
     Raises
     ------

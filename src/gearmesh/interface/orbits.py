@@ -116,6 +116,11 @@ class Orbit:
             `y`, `v`, `a` and `regime` over ``time``; `strobe_y` and `strobe_v` (y and dy/dτ_s at
             the initial phase), `y_max`, `y_min`, `stable`, `neutral`, `residual`; `multipliers`.
             Lengths are in mm and, with ``_rel`` appended to the name, in static deflections.
+
+        Notes
+        -----
+        ``to_netcdf(path, engine="netcdf4", auto_complex=True)`` writes the complex `multipliers`,
+        and ``xarray.open_dataset`` reads them with the same two arguments.
         """
         course = self.found.time_course(samples_per_period)
         lengths: dict[str, tuple[tuple[str, ...], Any, str]] = {

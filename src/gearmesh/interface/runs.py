@@ -19,8 +19,10 @@ from gearmesh.interface.statements import (
     read_variants,
     with_settings,
 )
+from gearmesh.model.problem import Problem
 from gearmesh.model.variants import Variant
 from gearmesh.solvers import simulation
+from gearmesh.solvers.response import Response
 from gearmesh.study.alternatives import DECLARED
 from gearmesh.study.cases import Case
 from gearmesh.study.pair import Pair
@@ -167,13 +169,7 @@ def sweep(
     order = sorted(nus, reverse=direction == "down")
     places = list(itertools.product(chosen, pairs))
     chains = [[one.problem(variant, x) for x in order] for variant, one in places]
-    samples = pair.samples_per_period if loads else 0
-    if direction is None:
-        problems = list(itertools.chain(*chains))
-        found = iter(simulation.simulate(problems, pair.tolerance, samples))
-        responses = [list(itertools.islice(found, len(order))) for _ in chains]
-    else:
-        responses = run_chains(chains, pair.tolerance, samples)
+    responses = _integrated(chains, [one for _, one in places], direction is not None, loads)
     at = {x: i for i, x in enumerate(order)}
     cells = [(i * len(pairs) + j, at[x]) for i in range(len(chosen)) for x in nus
              for j in range(len(pairs))]  # fmt: skip
@@ -183,6 +179,27 @@ def sweep(
     axes |= {name: _axis(name, values, pair) for name, values in over.items()}
     dataset = grid_dataset(rows, pairs * (len(rows) // len(pairs)), axes, states)
     return _described(dataset, pair, over)
+
+
+def _integrated(
+    chains: Sequence[Sequence[Problem]], pairs: Sequence[Pair], continued: bool, loads: bool
+) -> list[list[Response]]:
+    """Integrate each chain with the settings of its pair, those with equal settings together.
+
+    Unless the chains are continued, all of their runs begin from their own initial conditions.
+    """
+    settings = [(one.tolerance, one.samples_per_period if loads else 0) for one in pairs]
+    found: dict[int, list[Response]] = {}
+    for tolerance, samples in dict.fromkeys(settings):
+        places = [i for i, stated in enumerate(settings) if stated == (tolerance, samples)]
+        if continued:
+            together = run_chains([chains[i] for i in places], tolerance, samples)
+        else:
+            runs = [problem for i in places for problem in chains[i]]
+            responses = iter(simulation.simulate(runs, tolerance, samples))
+            together = [list(itertools.islice(responses, len(chains[i]))) for i in places]
+        found.update(zip(places, together, strict=True))
+    return [found[i] for i in range(len(chains))]
 
 
 def _check_speeds(nu: object, pairs: Sequence[Pair]) -> None:

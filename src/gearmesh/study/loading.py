@@ -63,7 +63,7 @@ def load_study(path: str | Path, overrides: Iterable[str] = ()) -> Study:
         changed[key] = f"--set {text}"
     pair = Pair.from_statements(statements, str(path), changed)
     plan = {
-        key: as_nu(value, pair) if key in _OF_FREQUENCIES else value
+        key: as_nu(value, pair, f"{path}: {key}") if key in _OF_FREQUENCIES else value
         for key, value in data.items()
         if key not in NAMES
     }
