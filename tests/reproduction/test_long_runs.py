@@ -70,6 +70,8 @@ def test_the_report_says_how_many_cases_settle_within_five_revolutions(found, fe
     assert lubricant.kinds["period 1"] == pytest.approx(59.8, abs=1.0)
     assert lubricant.kinds["longer"] == pytest.approx(10.4, abs=1.0)
     assert lubricant.kinds["moving"] == pytest.approx(29.9, abs=1.0)
+    moving = found["nu"].values[found["kind"].sel(variant="c-lubricant") == KINDS.index("moving")]
+    assert ((moving < 0.8) | (moving > 1.1)).all()
     assert lubricant.in_time == pytest.approx(59.3, abs=1.0)
     assert lubricant.last > 1000
     alone = ("periodic", "neutral", "quasi-periodic", "chaotic", "moving", "lost")

@@ -25,8 +25,17 @@ def test_replaced_parameters_are_read_like_those_of_a_file(paper):
     assert (backlash.kind, backlash.reason) == ("stated", "set on the command line")
 
 
-def test_of_one_parameter_the_last_replacement_counts(paper):
-    assert load_study(paper, ["backlash=5 um", "backlash=3 y_st"]).pair.backlash == 0.03
+@pytest.mark.parametrize(
+    ("overrides", "message"),
+    [
+        (["backlash=5 um", "backlash=3 y_st"], "--set backlash=3 y_st: backlash: found twice"),
+        (["torque=9 N m", "static_deflection=9 um"], "torque: stated beside static_deflection"),
+        (["static_deflection=9 um", "torque=9 N m"], "torque: stated beside static_deflection"),
+    ],
+)
+def test_no_replacement_is_dropped(paper, overrides, message):
+    with pytest.raises(InputError, match=message):
+        load_study(paper, overrides)
 
 
 def test_values_follow_a_reference_that_is_replaced_on_the_command_line(paper):

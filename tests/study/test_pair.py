@@ -126,11 +126,17 @@ def test_a_pair_cannot_be_changed_in_place(pair):
     ("changes", "message"),
     [
         ({"backlsh": "40 um"}, "backlsh: unknown key (did you mean 'backlash'?)"),
+        ({"torqe": "40 N m"}, "torqe: unknown key (did you mean 'torque'?)"),
+        ({"xyz": 1}, "xyz: unknown key; 'gearmesh parameters' lists all parameters"),
         ({"backlash": "4 kg"}, "backlash: found '4 kg'; unit 'kg' is of another kind"),
         ({"backlash": 0.04}, "backlash: found 0.04; unit missing; expected: a length"),
         ({"teeth": 2}, "teeth: found 2; out of range; allowed is 3 to 1000"),
         ({"contact_ratio": None}, "contact_ratio: found nothing"),
         ({"kept_revolutions": 6}, "kept_revolutions: found 6; allowed are at most the 5"),
+        (
+            {"revolutions": 40, "kept_revolutions": 40, "teeth": 1000, "samples_per_period": 256},
+            "kept_revolutions: found 40, which makes 10240000 samples (teeth × samples_per_period",
+        ),
         ({"static_deflection": None}, "static_deflection: missing; backlash is stated in y_st"),
     ],
 )

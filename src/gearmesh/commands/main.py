@@ -9,10 +9,28 @@ from typing import NoReturn
 
 from gearmesh import __version__
 from gearmesh.errors import InputError
+from gearmesh.garbage import search_rarely
 
 BAD_INPUT = 2
 INTERRUPTED = 130
 OUT_OF_MEMORY = 1
+
+
+class _Once(argparse.Action):
+    """Store a value, and refuse a second one: argparse would drop the first without a word."""
+
+    def __call__(
+        self,
+        parser: argparse.ArgumentParser,
+        namespace: argparse.Namespace,
+        values: object,
+        option_string: str | None = None,
+    ) -> None:
+        given = namespace.__dict__.setdefault("given", set())
+        if self.dest in given:
+            raise InputError(f"{option_string}: found twice; allowed is once")
+        given.add(self.dest)
+        setattr(namespace, self.dest, values)
 
 
 class _Parser(argparse.ArgumentParser):
@@ -20,6 +38,7 @@ class _Parser(argparse.ArgumentParser):
 
     def __init__(self, **settings: object) -> None:
         super().__init__(allow_abbrev=False, **settings)  # type: ignore[arg-type]
+        self.register("action", None, _Once)
 
     def error(self, message: str) -> NoReturn:
         raise InputError(f"{message} (see {self.prog} --help)")
@@ -48,6 +67,7 @@ def _actions(parser: argparse.ArgumentParser) -> list[argparse.Action]:
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run the command; returns the exit status, 2 for bad input."""
+    search_rarely()
     for stream in (sys.stdout, sys.stderr):
         if hasattr(stream, "reconfigure"):
             stream.reconfigure(errors="replace")  # Greek letters on a terminal that has none
@@ -126,7 +146,11 @@ def _add_runs(commands: "argparse._SubParsersAction[_Parser]", pair: _Parser) ->
         "sweep", parents=[pair, run], help="integrate variants over mesh frequencies"
     )
     sweep.add_argument(
-        "--variant", required=True, nargs="+", help="one or several, see 'gearmesh variants'"
+        "--variant",
+        required=True,
+        nargs="+",
+        action="extend",
+        help="one or several, see 'gearmesh variants'; may be repeated",
     )
     sweep.add_argument(
         "--nu", required=True, metavar="START:STOP:STEP", help="mesh frequencies nu_s, or speeds"

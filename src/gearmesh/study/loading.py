@@ -54,16 +54,18 @@ def load_study(path: str | Path, overrides: Iterable[str] = ()) -> Study:
         }
     except InputError as error:
         raise InputError(f"{path}: {error}") from None
-    changed = {}
+    changed: dict[str, str] = {}
     for text in overrides:
         key, value = _override(text)
-        for other in excluded_by({key: value}):
+        if key in changed:
+            raise InputError(f"--set {text}: {key}: found twice; allowed is once")
+        for other in excluded_by({key: value}) - {*changed}:
             statements.pop(other, None)
         statements[key] = Statement(value, reason="set on the command line")
         changed[key] = f"--set {text}"
     pair = Pair.from_statements(statements, str(path), changed)
     plan = {
-        key: as_nu(value, pair) if key in _OF_FREQUENCIES else value
+        key: as_nu(value, pair, f"{path}: {key}") if key in _OF_FREQUENCIES else value
         for key, value in data.items()
         if key not in NAMES
     }

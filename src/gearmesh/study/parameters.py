@@ -8,7 +8,7 @@ from pydantic import model_validator
 from gearmesh.study.flanks import check_flanks
 from gearmesh.study.frequencies import NU_MAX, NU_MIN
 from gearmesh.study.harmonics import BacklashHarmonic, ToothStiffness, TorqueHarmonic
-from gearmesh.study.reading.schema import Section, quantity
+from gearmesh.study.reading.schema import Section, of_wheels, quantity
 
 SETTINGS = frozenset(
     {"initial_phase", "initial_displacement", "initial_velocity"}
@@ -28,6 +28,10 @@ _STIFFNESSES = (
 
 MOST_HARMONICS = 100
 """Higher harmonics shorten the steps of the solver: a run with 2,000 would take many minutes."""
+
+
+MOST_SAMPLES = 10_000_000
+"""Samples that a run may keep. A time course needs about 440 bytes of memory for each: 4.4 GB."""
 
 
 class Parameters(Section):
@@ -284,5 +288,13 @@ class Parameters(Section):
             raise ValueError(
                 f"kept_revolutions: found {self.kept_revolutions}; allowed are at most the "
                 f"{self.revolutions} that are run"
+            )
+        of_revolution = of_wheels(self.teeth)[0] * self.samples_per_period
+        samples = self.kept_revolutions * of_revolution
+        if samples > MOST_SAMPLES:
+            raise ValueError(
+                f"kept_revolutions: found {self.kept_revolutions}, which makes {samples} samples "
+                f"(teeth × samples_per_period × kept_revolutions); allowed are at most "
+                f"{MOST_SAMPLES}, here {MOST_SAMPLES // of_revolution} revolutions"
             )
         return self
