@@ -107,6 +107,7 @@ def test_the_paper_s_pair_is_there_in_any_folder(gearmesh, tmp_path):
     assert gearmesh("parameters", cwd=tmp_path).stdout == gearmesh("parameters").stdout
 
 
+SWEEP = ("sweep", "--variant", "b-both", "-o", "x.nc")
 SIMULATE = ("simulate", "--variant", "c-lubricant", "--nu", "0.66")
 
 
@@ -293,8 +294,17 @@ def test_compare_lists_what_differs(gearmesh, two_runs, tmp_path):
         ((*SIMULATE, "-o", "x.nc", "--kept", "9"), "kept_revolutions"),
         ((*SIMULATE, "-o", "x.nc", "--revolutions", "two"), "--revolutions: found 'two'"),
         ((*SIMULATE, "-o", "x.nc", "--start", "1 kg", "0"), "1 kg"),
-        (("sweep", "--variant", "b-both", "--nu", "1:0.9:0.1", "-o", "x.nc"), "START <= STOP"),
-        (("sweep", "--variant", "b-both", "--nu", "0.9:1:0", "-o", "x.nc"), "positive STEP"),
+        (
+            ("sweep", "--variant", "b-both", "--nu", "1:0.9:0.1", "-o", "x.nc"),
+            "found 0.9, below start",
+        ),
+        ((*SWEEP, "--nu", "0.9:1:0"), "--nu: step: found '0'; out of range; allowed is 1e-09 to"),
+        ((*SWEEP, "--nu", ".6:.7:nan"), "--nu: step: found 'nan'; not a quantity"),
+        ((*SWEEP, "--nu", "0.9:1"), "allowed is START:STOP:STEP"),
+        ((*SWEEP, "--nu", "600 rpm:3000 rpm:100"), "step '100'; allowed are three speeds, or"),
+        ((*SWEEP, "--nu", "600 rpm:3000 rpm:0 rpm"), "step: found '0 rpm'; allowed is 1e-06 rpm"),
+        ((*SWEEP, "--nu", "600 rpm:500 rpm:10 rpm"), "stop: found '500 rpm'; allowed is 600 rpm"),
+        ((*SWEEP, "--nu", "600 rpm:1e9 rpm:10 rpm"), "stop: found '1e9 rpm'; ν_s = "),
         (("plot", "none.nc"), "none.nc: cannot be read: No such file"),
         (("plot", "config/paper.yaml"), "not a NetCDF file"),
         (("parameters", "--config", "."), "cannot be read"),

@@ -1,5 +1,7 @@
 """Orbits and branches with units, and the messages if there are none."""
 
+import dataclasses
+
 import numpy as np
 import pytest
 import xarray as xr
@@ -117,6 +119,47 @@ def test_a_parameter_with_a_unit_is_followed(pair):
     assert float(found.y_max_rel[middle]) == pytest.approx(
         float(alone.to_dataset().y_max_rel), abs=1e-9
     )
+
+
+EDGES = {
+    "friction_coefficient": (0.0, 0.1),
+    "stiffness_ratio": (0.5, 1.0),
+    "bearing_damping_ratio": (0.0, 0.1),
+    "damping": (0.0, 5.0),
+}
+"""Ranges that reach to where a parameter has no meaning beyond."""
+
+
+@pytest.mark.parametrize("name", EDGES)
+def test_a_branch_reaches_its_limits_exactly(pair, name):
+    low, high = EDGES[name]
+    branch = gm.follow(gm.find_orbit(pair, "c-material", 0.9), name, (low, high))
+    assert branch.ends == ("limit", "limit")
+    assert branch.to_dataset()[name].values[[0, -1]].tolist() == [low, high]
+    last = branch.at(-1)
+    assert getattr(last.pair, name) == high
+    alone = gm.find_orbit(last.pair, "c-material", 0.9)
+    assert alone.found.y_max == pytest.approx(last.found.y_max, abs=1e-9)
+
+
+def test_a_curve_of_special_points_reaches_its_limits_and_begins_inside_them(pair, orbit):
+    point = gm.follow(orbit, "nu", (0.6, 0.7)).special[0]
+    curve = gm.follow_special(point, ("nu", "friction_coefficient"), ((0.55, 0.7), (0.0, 0.05)))
+    assert curve.found.ends == ("limit", "limit")
+    assert curve.found.values[[0, -1], 1].tolist() == [0.0, 0.05]
+    with pytest.raises(gm.NoOrbit, match="outside 1 to"):
+        gm.follow_special(point, ("nu", "damping"), ((1.0, 1.2), (1.0, 5.0)))
+
+
+def test_the_branch_of_twice_the_period_begins_at_a_flip(pair):
+    branch = gm.follow(gm.find_orbit(pair, "c-lubricant", 0.7), "nu", (0.64, 0.72))
+    flip = [point for point in branch.special if point.kind == "flip"][-1]
+    doubled = gm.follow(flip.double_period(), "nu", (0.64, 0.72))
+    assert doubled.orbit.periods == 2
+    assert min(abs(point.nu - flip.nu) for point in doubled.special) < 1e-8
+    fold = dataclasses.replace(flip, kind="fold")
+    with pytest.raises(gm.InputError, match="only at a flip"):
+        fold.double_period()
 
 
 def test_the_end_of_the_loops_for_every_damping_is_one_curve(pair, orbit):

@@ -4,10 +4,12 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+import gearmesh as gm
 from gearmesh.data import paths
 from gearmesh.errors import InputError
 from gearmesh.study.frequencies import Frequencies, read_nu
 from gearmesh.study.reading.schema import validate
+from gearmesh.study.speeds import as_nu, read_nu_or_speed
 
 
 def frequencies(**stated):
@@ -41,6 +43,20 @@ def test_a_grid_holds_the_decimals_that_one_would_write(start, step, count):
         return
     expected = [float(f"{start + i * step}e-4") for i in range(count + 1)]
     assert list(frequencies(**stated).all) == expected
+
+
+@given(st.integers(600, 90_000), st.integers(1, 5000), st.integers(0, 60))
+def test_a_grid_of_speeds_holds_the_speeds_that_one_would_write(start, step, count):
+    """Conversion of ends and step would round them, and so could remove the last value."""
+    pair = gm.paper()
+    ends = {"start": start, "stop": start + step * count, "step": step}
+    stated = {name: f"{number}e-1 rpm" for name, number in ends.items()}
+    if ends["stop"] > 100 * pair.resonance_speed:
+        with pytest.raises(InputError, match=r"nu.stop: found .*; ν_s = .* allowed is 0.01 to 10"):
+            as_nu(stated, pair, "nu")
+        return
+    expected = [read_nu_or_speed(f"{start + i * step}e-1 rpm", pair) for i in range(count + 1)]
+    assert list(frequencies(**as_nu(stated, pair, "nu")).all) == expected
 
 
 def test_values_join_a_grid_or_stand_alone():

@@ -3,15 +3,15 @@
 import argparse
 import os
 from collections.abc import Sequence
-from decimal import Decimal, InvalidOperation
 from pathlib import Path
 
 from gearmesh.commands.tables import load_pair
 from gearmesh.data.writing import replacing
 from gearmesh.errors import InputError
 from gearmesh.model.variants import variant
-from gearmesh.study.frequencies import MAX_CASES
+from gearmesh.study.frequencies import Frequencies
 from gearmesh.study.pair import Pair
+from gearmesh.study.reading.schema import validate
 from gearmesh.study.speeds import as_nu, read_nu_or_speed
 
 NOT_INTEGRATED = 1
@@ -130,17 +130,8 @@ def _frequencies(text: str, pair: Pair) -> list[float]:
         return [read_frequency(text, pair)]
     if len(parts) != 3:
         raise InputError(f"--nu: found '{text}'; allowed is START:STOP:STEP, or one number")
-    low, high = (Decimal(repr(read_frequency(part, pair))) for part in parts[:2])
-    try:
-        step = Decimal(str(as_nu(parts[2], pair)))
-    except InvalidOperation:
-        raise InputError(f"--nu: found step '{parts[2]}'; allowed is a positive number") from None
-    if not step > 0 or not step.is_finite() or high < low:
-        raise InputError(f"--nu: found '{text}'; allowed is START <= STOP and a positive STEP")
-    count = int((high - low) / step) + 1
-    if count > MAX_CASES:
-        raise InputError(f"--nu: '{text}' makes {count} frequencies; allowed are {MAX_CASES}")
-    return [float(low + i * step) for i in range(count)]
+    stated = as_nu(dict(zip(("start", "stop", "step"), parts, strict=True)), pair, "--nu")
+    return list(validate(Frequencies, stated, "--nu", {}).all)
 
 
 def check_output(path: Path) -> str:

@@ -10,6 +10,7 @@ import xarray as xr
 
 from gearmesh.dynamics.continuation import branches, special_curves, special_points
 from gearmesh.dynamics.continuation.curves import Family
+from gearmesh.dynamics.periodic.shots import Shot
 from gearmesh.errors import InputError
 from gearmesh.interface.lengths import with_lengths
 from gearmesh.interface.orbits import Orbit
@@ -41,6 +42,24 @@ class SpecialPoint:
     parameters: dict[str, float]
     orbit: Orbit = field(repr=False)
 
+    def double_period(self) -> Orbit:
+        """Return an orbit of twice the period, close to this flip, from which to follow its branch.
+
+        Raises
+        ------
+        InputError
+            If the point is of another kind.
+        NoOrbit
+            If there is none nearby.
+        """
+        if self.kind != "flip":
+            raise InputError(f"kind: found {self.kind!r}; only at a flip does the period double")
+        (name,) = self.parameters
+        family, _ = _family(self.orbit, (name,))
+        bare = special_points.SpecialPoint(self.kind, self.nu, self.parameters, self.orbit.found)
+        found, value = branches.double_period(bare, family)
+        return _at_value(self.orbit, name, value, found)
+
 
 @dataclass(frozen=True)
 class Branch:
@@ -71,11 +90,8 @@ class Branch:
         """Return the orbit at a point of the branch; negative numbers count from its end."""
         size = len(self.found.points)
         point = read_whole("point", point, -size, size - 1)
-        found, orbit = self.found.orbits[point], self.orbit
-        pair = orbit.pair
-        if self.parameter != "nu":
-            pair = with_number(pair, self.parameter, float(self.found.values[point]))
-        return Orbit(pair, orbit.variant, found.problem.nu, found)
+        found, value = self.found.orbits[point], float(self.found.values[point])
+        return _at_value(self.orbit, self.parameter, value, found)
 
     @cached_property
     def special(self) -> list[SpecialPoint]:
@@ -199,6 +215,8 @@ def follow_special(
     ------
     NoOrbit
         If the curve cannot be followed; the message gives the reason.
+    InputError
+        One line, if an argument is wrong.
     """
     if not isinstance(point, SpecialPoint):
         raise InputError(f"point: found {shown(point)}; allowed is one of Branch.special")
@@ -224,12 +242,16 @@ def _two(name: str, values: object) -> tuple[Any, Any]:
 
 def _special(point: special_points.SpecialPoint, orbit: Orbit) -> SpecialPoint:
     """Return a special point with the pair that it belongs to."""
-    pair = orbit.pair
+    found = orbit
     for name, value in point.parameters.items():
-        if name != "nu":
-            pair = with_number(pair, name, value)
-    found = Orbit(pair, orbit.variant, point.nu, point.orbit)
+        found = _at_value(found, name, value, point.orbit)
     return SpecialPoint(point.kind, point.nu, dict(point.parameters), found)
+
+
+def _at_value(orbit: Orbit, name: str, value: float, found: Shot) -> Orbit:
+    """Return an orbit that was found at a value of a parameter of another one."""
+    pair = orbit.pair if name == "nu" else with_number(orbit.pair, name, value)
+    return Orbit(pair, orbit.variant, found.problem.nu, found)
 
 
 def _family(orbit: Orbit, names: tuple[str, ...]) -> tuple[Family, tuple[float, ...]]:

@@ -28,6 +28,21 @@ def _decimal(nu: float) -> Decimal:
     return Decimal(repr(nu)).quantize(Decimal(1).scaleb(-NU_DECIMALS))
 
 
+def grid(start: float, stop: float, step: float) -> list[float]:
+    """Return start, start + step, … up to stop, as one would write them: the sums are decimal.
+
+    Raises
+    ------
+    ValueError
+        If there are more than `MAX_CASES`; the message begins with ``step:``.
+    """
+    low, high, by = (Decimal(repr(number)) for number in (start, stop, step))
+    count = int((high - low) / by) + 1
+    if count > MAX_CASES:
+        raise ValueError(f"step: makes {count} frequencies; allowed are at most {MAX_CASES}")
+    return [float(low + i * by) for i in range(count)]
+
+
 Nu = Annotated[float, BeforeValidator(read_nu)]
 
 
@@ -51,27 +66,20 @@ class Frequencies(Section):
             raise ValueError(
                 f"stop: found {self.stop:g}, below start; allowed is {self.start:g} to {NU_MAX:g}"
             )
-        count = self._count() + len(self.values)
-        if count > MAX_CASES:
-            raise ValueError(f"step: makes {count} frequencies; allowed are at most {MAX_CASES}")
         seen = set(self._grid())
+        count = len(seen) + len(self.values)
+        if count > MAX_CASES:
+            raise ValueError(f"values: make {count} frequencies; allowed are at most {MAX_CASES}")
         for nu in self.values:
             if nu in seen:
                 raise ValueError(f"values: found {nu:g} twice, or on the grid too; allowed is once")
             seen.add(nu)
         return self
 
-    def _count(self) -> int:
-        if self.step is None:
-            return 0
-        span = Decimal(repr(self.stop)) - Decimal(repr(self.start))
-        return int(span / Decimal(repr(self.step))) + 1
-
     def _grid(self) -> list[float]:
-        if self.step is None:
+        if self.start is None or self.stop is None or self.step is None:
             return []
-        start, step = Decimal(repr(self.start)), Decimal(repr(self.step))
-        return [float(_decimal(float(start + i * step))) for i in range(self._count())]
+        return [float(_decimal(nu)) for nu in grid(self.start, self.stop, self.step)]
 
     @cached_property
     def all(self) -> tuple[float, ...]:

@@ -6,6 +6,7 @@ becomes one line. Nothing in a configuration is evaluated.
 
 import re
 from collections.abc import Iterable, Mapping
+from os import PathLike
 from pathlib import Path
 
 from gearmesh.errors import InputError
@@ -63,7 +64,7 @@ def load_study(path: str | Path, overrides: Iterable[str] = ()) -> Study:
         changed[key] = f"--set {text}"
     pair = Pair.from_statements(statements, str(path), changed)
     plan = {
-        key: as_nu(value, pair) if key in _OF_FREQUENCIES else value
+        key: as_nu(value, pair, f"{path}: {key}") if key in _OF_FREQUENCIES else value
         for key, value in data.items()
         if key not in NAMES
     }
@@ -216,4 +217,6 @@ def load(path: str | Path) -> Study:
     InputError
         With one line: file, key, what was found, what is allowed.
     """
+    if not isinstance(path, str | PathLike):
+        raise InputError(f"path: found {shown(path)}; allowed is the name of a file")
     return load_study(path)
