@@ -6,6 +6,7 @@ becomes one line. Nothing in a configuration is evaluated.
 
 import re
 from collections.abc import Iterable, Mapping
+from os import PathLike
 from pathlib import Path
 
 from gearmesh.errors import InputError
@@ -218,4 +219,6 @@ def load(path: str | Path) -> Study:
     InputError
         With one line: file, key, what was found, what is allowed.
     """
+    if not isinstance(path, str | PathLike):
+        raise InputError(f"path: found {shown(path)}; allowed is the name of a file")
     return load_study(path)
