@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 from gearmesh.errors import InputError
 from gearmesh.study.cases import Plan, Study
-from gearmesh.study.loading import load_study
+from gearmesh.study.loading import load, load_study
 from gearmesh.study.pair import Pair
 
 fuzz = settings(
@@ -161,6 +161,7 @@ BAD_FILES = {
     "deep": (b"a: " + b"[" * 5000, "more than 12 levels"),
     "huge": (b"#" * 1_000_001, "larger than"),
     "no base": (b"base: missing.yaml", "missing.yaml: cannot be read (No such file"),
+    "base with nul": (b'base: "a\\0b"', "cannot be read (embedded null byte)"),
     "base a list": (b"base: [paper.yaml]", "base: found a list of 1; allowed is the name of a fi"),
     "itself": (b"base: study.yaml", "inherit in a circle"),
     "nothing stated": (b"title: x", "contact_ratio: missing; expected: contact ratio"),
@@ -192,6 +193,19 @@ def test_a_file_that_cannot_be_opened_is_named(tmp_path):
         load_study(tmp_path / "missing.yaml")
     with pytest.raises(InputError, match="cannot be read \\(Is a directory"):
         load_study(tmp_path)
+
+
+@pytest.mark.parametrize("path", [None, 5, b"paper.yaml", [], "", "a\0b"])
+def test_what_is_no_name_of_a_file_is_reported_in_one_line(path):
+    with pytest.raises(InputError, match=r"allowed is the name of a file|cannot be read"):
+        load(path)
+
+
+@pytest.mark.parametrize("claims", ["nope.yaml", ".", '"a\\0b"'])
+def test_a_ledger_that_is_not_there_is_reported(write, claims):
+    file = write(f"base: paper.yaml\nclaims: {claims}")
+    with pytest.raises(InputError, match=r"study.yaml: claims: there is no file "):
+        load(file)
 
 
 def test_several_mistakes_are_counted(paper):
