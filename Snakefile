@@ -15,11 +15,13 @@ from snakemake.utils import min_version
 
 from gearmesh.data import paths
 from gearmesh.errors import InputError
+from gearmesh.garbage import search_rarely
 from gearmesh.identification import layout
 from gearmesh.pipeline import locks, plan as pipeline
 from gearmesh.pipeline.messages import BAD_INPUT, say
 
 min_version("9.0")
+search_rarely()
 
 try:
     PLAN = pipeline.load(

@@ -244,8 +244,8 @@ class Row:
 ROWS = {
     "environment": Row(
         *(_environment, "s", 0.6),
-        "a third of it compiles modules; most packages are those of the base: NumPy, SciPy, numba, "
-        "pandas, matplotlib, Snakemake, heyoka",
+        "pip takes 20 s to choose and unpack packages and 20 s to compile their modules; most are "
+        "those of the base: NumPy, SciPy, numba, pandas, matplotlib, Snakemake, heyoka",
     ),
     "study cold": Row(*(_cold, "s", 0.55), "numba compiles kernels of the added jobs, too"),
     "study warm": Row(

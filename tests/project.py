@@ -34,11 +34,12 @@ time_courses: null
 
 @functools.cache
 def compile_solvers() -> None:
-    """Compile what the studies here run, so that no copy of the project has to."""
+    """Compile what studies and pages run here, so that no copy of the project has to."""
     pair = gm.paper()
     simulate([pair.problem(variant("c-both"), 0.7)], estimate_errors=False)
     gm.simulate(pair, "c-both", 0.7)
     gm.find_orbit(pair, "c-lubricant", 0.9)
+    gm.simulate(pair.replace(eccentricity="1 um"), "c-both", 0.7)  # by the general solver
 
 
 class Project:

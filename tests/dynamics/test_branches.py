@@ -118,7 +118,7 @@ def test_special_points_depend_on_neither_start_nor_phase_nor_steps(lubricant, n
 
 def test_the_period_doubles_at_a_flip(lubricant):
     flip = next(point for point in lubricant.special if point.kind == "flip")
-    doubled = double_period(flip)
+    doubled, _ = double_period(flip)
     assert doubled.periods == 2
     assert doubled.residual < LARGEST_RESIDUAL
     branch = follow(doubled, "nu", (0.6, 0.7))
@@ -135,7 +135,7 @@ def test_the_period_doubles_again():
     orbit = find_orbit(problem(0.66, "c-lubricant", **HEAVY), 2)
     branch = follow(orbit, "nu", (0.63, 0.67))
     flip = next(p for p in branch.special if p.kind == "flip" and p.orbit.periods == 2)
-    doubled = double_period(flip)
+    doubled, _ = double_period(flip)
     assert doubled.periods == 4
     assert find_orbit(doubled.problem, 4, start=doubled.state).residual < LARGEST_RESIDUAL
     assert branch.ends.count(HALVED) == 1

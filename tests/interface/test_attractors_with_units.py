@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+import xarray as xr
 
 import gearmesh as gm
 
@@ -18,6 +19,16 @@ def basins(pair):
     return gm.basins(
         pair, "b-material", 0.8, y=["-10 um", 0, "2 y_st"], v=[-3.0, 0, 3.0], phase=phases
     )
+
+
+def test_a_dataset_with_complex_multipliers_is_written_and_read_again(pair, basins, tmp_path):
+    found = gm.attractors(pair, "c-material", 0.7, starts=[(0, 0)])
+    how = {"engine": "netcdf4", "auto_complex": True}
+    for dataset in (found, basins):
+        dataset.to_netcdf(tmp_path / "found.nc", **how)
+        with xr.open_dataset(tmp_path / "found.nc", **how) as again:
+            assert again.identical(dataset)
+            assert again.multipliers.dtype == complex
 
 
 def test_labels_are_the_same_in_every_dataset(pair, basins):
@@ -61,6 +72,14 @@ WRONG = {
     "a start": lambda pair: gm.attractors(pair, "c-material", 0.7, starts=[("1 kg", 0)]),
     "starts": lambda pair: gm.attractors(pair, "c-material", 0.7, starts=[]),
     "revolutions": lambda pair: gm.attractors(pair, "c-material", 0.7, revolutions=0),
+    "pair": lambda _: gm.attractors("paper", "c-material", 0.7),
+    "no pair": lambda _: gm.lyapunov_spectrum(None, "c-material", 0.7),
+    "pair of basins": lambda _: gm.basins(None, "c-material", 0.7, y=1.0),
+    "nu in a list": lambda pair: gm.basins(pair, "c-material", [0.66], y=1.0),
+    "nested nu": lambda pair: gm.lyapunov_spectrum(pair, "c-material", [[0.66, 0.7]]),
+    "starts in an array": lambda pair: gm.attractors(pair, "c-material", 0.7, starts=np.eye(9)),
+    "nested y": lambda pair: gm.basins(pair, "c-material", 0.7, y=[[1.0], [2.0, 3.0]]),
+    "nested phases": lambda pair: gm.basins(pair, "c-material", 0.7, y=1, phase=[[0], [0, 1]]),
     "y": lambda pair: gm.basins(pair, "c-material", 0.7, y=["1 kg"]),
     "y twice": lambda pair: gm.basins(pair, "c-material", 0.7, y=[1.0, "1 y_st"]),
     "phase": lambda pair: gm.basins(pair, "c-material", 0.7, y=1.0, phase=1.5),
@@ -73,3 +92,4 @@ def test_a_wrong_argument_is_one_line(pair, name):
     with pytest.raises(gm.InputError) as caught:
         WRONG[name](pair)
     assert "\n" not in str(caught.value)
+    assert len(str(caught.value)) < 200

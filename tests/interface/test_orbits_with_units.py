@@ -1,7 +1,10 @@
 """Orbits and branches with units, and the messages if there are none."""
 
+import dataclasses
+
 import numpy as np
 import pytest
+import xarray as xr
 
 import gearmesh as gm
 
@@ -14,6 +17,22 @@ def pair():
 @pytest.fixture(scope="module")
 def orbit(pair):
     return gm.find_orbit(pair, "c-material", 0.7)
+
+
+@pytest.mark.parametrize("changes", [{}, {"teeth": [21, 22]}])
+def test_the_certificate_of_an_orbit_is_public(pair, changes):
+    """The orbit stays in normal mesh, so y_min is its margin, and the forces are those of a run."""
+    stated = pair.replace(**changes)
+    orbit = gm.find_orbit(stated, "c-material", 0.7)
+    course = orbit.to_dataset()
+    run = gm.simulate(stated, "c-material", 0.7, revolutions=20)
+    least = float(run.force_min) / pair.static_force
+    assert orbit.least_force == pytest.approx(least, abs=1e-5)
+    assert orbit.multiplier_error < 1e-7
+    if changes:
+        assert np.isnan(orbit.extremum_margin)
+    else:
+        assert orbit.extremum_margin == pytest.approx(float(course.y_min_rel), abs=1e-12)
 
 
 def test_a_long_run_ends_on_the_stable_orbit(pair, orbit):
@@ -37,6 +56,16 @@ def test_an_orbit_closes_and_has_units(pair, orbit):
     assert np.array_equal(found.y_rel[0], found.strobe_y_rel)
 
 
+@pytest.mark.parametrize("kind", ["orbit", "branch"])
+def test_a_dataset_with_complex_multipliers_is_written_and_read_again(orbit, kind, tmp_path):
+    found = orbit if kind == "orbit" else gm.follow(orbit, "nu", (0.69, 0.71))
+    dataset, how = found.to_dataset(), {"engine": "netcdf4", "auto_complex": True}
+    dataset.to_netcdf(tmp_path / "found.nc", **how)
+    with xr.open_dataset(tmp_path / "found.nc", **how) as again:
+        assert again.identical(dataset)
+        assert again.multipliers.dtype == complex
+
+
 def test_a_branch_passes_its_special_points_in_order(orbit):
     branch = gm.follow(orbit, "nu", (0.6, 1.2))
     kinds = [point.kind for point in branch.special]
@@ -56,6 +85,28 @@ def test_what_a_special_point_holds_is_an_orbit_there(pair, orbit):
     )
 
 
+@pytest.mark.parametrize(
+    ("name", "limits", "low"),
+    [
+        ("backlash", ("7.9 y_st", "8.1 y_st"), 0.079),
+        ("nu", ("3200 rpm", 0.71), None),
+        ("inertia", ("0.0054 kg m^2", "0.0055 kg m^2"), 0.0054),
+        ("damping_2m", ("3.9 N s/mm", "4 N s/mm"), 3.9),
+    ],
+)
+def test_what_has_one_value_is_followed_between_limits_with_units(pair, orbit, name, limits, low):
+    found = gm.follow(orbit, name, limits).to_dataset()
+    low = 3200.0 / pair.resonance_speed if low is None else low
+    assert float(found[name].min()) == pytest.approx(low, rel=1e-12)
+
+
+def test_a_point_that_a_branch_does_not_have_is_one_line(orbit):
+    branch = gm.follow(orbit, "nu", (0.69, 0.71))
+    assert branch.at(np.int64(-1)).nu == pytest.approx(0.71)
+    with pytest.raises(gm.InputError, match="point: found 1000000; allowed is a whole number"):
+        branch.at(10**6)
+
+
 def test_a_parameter_with_a_unit_is_followed(pair):
     orbit = gm.find_orbit(pair, "c-material", 0.62)
     branch = gm.follow(orbit, "damping", ("3 N s/mm", "6 N s/mm"))
@@ -68,6 +119,47 @@ def test_a_parameter_with_a_unit_is_followed(pair):
     assert float(found.y_max_rel[middle]) == pytest.approx(
         float(alone.to_dataset().y_max_rel), abs=1e-9
     )
+
+
+EDGES = {
+    "friction_coefficient": (0.0, 0.1),
+    "stiffness_ratio": (0.5, 1.0),
+    "bearing_damping_ratio": (0.0, 0.1),
+    "damping": (0.0, 5.0),
+}
+"""Ranges that reach to where a parameter has no meaning beyond."""
+
+
+@pytest.mark.parametrize("name", EDGES)
+def test_a_branch_reaches_its_limits_exactly(pair, name):
+    low, high = EDGES[name]
+    branch = gm.follow(gm.find_orbit(pair, "c-material", 0.9), name, (low, high))
+    assert branch.ends == ("limit", "limit")
+    assert branch.to_dataset()[name].values[[0, -1]].tolist() == [low, high]
+    last = branch.at(-1)
+    assert getattr(last.pair, name) == high
+    alone = gm.find_orbit(last.pair, "c-material", 0.9)
+    assert alone.found.y_max == pytest.approx(last.found.y_max, abs=1e-9)
+
+
+def test_a_curve_of_special_points_reaches_its_limits_and_begins_inside_them(pair, orbit):
+    point = gm.follow(orbit, "nu", (0.6, 0.7)).special[0]
+    curve = gm.follow_special(point, ("nu", "friction_coefficient"), ((0.55, 0.7), (0.0, 0.05)))
+    assert curve.found.ends == ("limit", "limit")
+    assert curve.found.values[[0, -1], 1].tolist() == [0.0, 0.05]
+    with pytest.raises(gm.NoOrbit, match="outside 1 to"):
+        gm.follow_special(point, ("nu", "damping"), ((1.0, 1.2), (1.0, 5.0)))
+
+
+def test_the_branch_of_twice_the_period_begins_at_a_flip(pair):
+    branch = gm.follow(gm.find_orbit(pair, "c-lubricant", 0.7), "nu", (0.64, 0.72))
+    flip = [point for point in branch.special if point.kind == "flip"][-1]
+    doubled = gm.follow(flip.double_period(), "nu", (0.64, 0.72))
+    assert doubled.orbit.periods == 2
+    assert min(abs(point.nu - flip.nu) for point in doubled.special) < 1e-8
+    fold = dataclasses.replace(flip, kind="fold")
+    with pytest.raises(gm.InputError, match="only at a flip"):
+        fold.double_period()
 
 
 def test_the_end_of_the_loops_for_every_damping_is_one_curve(pair, orbit):
@@ -85,7 +177,9 @@ def test_an_orbit_in_contact_without_damping_is_neutral(pair):
 
 
 def test_an_orbit_that_is_not_there_says_why(pair):
-    with pytest.raises(gm.NoOrbit, match="leads to an orbit of period 1"):
+    with pytest.raises(
+        gm.NoOrbit, match=r"no orbit of period 2 at nu = 0\.7: .* leads to an orbit of period 1"
+    ):
         gm.find_orbit(pair, "c-material", 0.7, periods=2, start=(1.0, 0.0))
     with pytest.raises(gm.NoOrbit, match="after 21 mesh periods"):
         gm.find_orbit(pair.replace(eccentricity="10 um"), "c-material", 0.7)
@@ -97,6 +191,28 @@ WRONG = {
     "parameter": lambda pair, orbit: gm.follow(orbit, "backlsh", (0, 1)),
     "parameter of two numbers": lambda pair, orbit: gm.follow(orbit, "eccentricity", (0, 1)),
     "whole number": lambda pair, orbit: gm.follow(orbit, "teeth", (10, 30)),
+    "pair": lambda pair, orbit: gm.find_orbit("paper", "c-material", 0.7),
+    "nu in a list": lambda pair, orbit: gm.find_orbit(pair, "c-material", [0.66]),
+    "a run as a start": lambda pair, orbit: gm.find_orbit(
+        pair, "c-material", 0.7, start=orbit.to_dataset()
+    ),
+    "an orbit as the start of a run": lambda pair, orbit: gm.simulate(
+        pair, "c-material", 0.7, start=orbit
+    ),
+    "no orbit": lambda pair, orbit: gm.follow(None, "nu", (0.6, 0.7)),
+    "a list of names": lambda pair, orbit: gm.follow(orbit, ["nu"], (0.6, 0.7)),
+    "endless": lambda pair, orbit: gm.follow(orbit, "nu", (-np.inf, np.inf)),
+    "no limits": lambda pair, orbit: gm.follow(orbit, "nu", None),
+    "limit None": lambda pair, orbit: gm.follow(orbit, "nu", (None, 1)),
+    "one limit": lambda pair, orbit: gm.follow(orbit, "nu", (0.6,)),
+    "limit below 0": lambda pair, orbit: gm.follow(orbit, "damping", (-1, 10)),
+    "an open parameter": lambda pair, orbit: gm.follow(orbit, "final_speed", (1, 10)),
+    "no samples": lambda pair, orbit: orbit.to_dataset(0),
+    "samples below 0": lambda pair, orbit: orbit.to_dataset(-3),
+    "half a sample": lambda pair, orbit: orbit.to_dataset(2.5),
+    "an orbit as a special point": lambda pair, orbit: gm.follow_special(
+        orbit, ("nu", "damping"), ((0.6, 0.7), (1, 10))
+    ),
     "limits": lambda pair, orbit: gm.follow(orbit, "nu", (1.2, 0.6)),
     "limit in kg": lambda pair, orbit: gm.follow(orbit, "backlash", ("1 kg", "2 kg")),
 }
@@ -106,4 +222,24 @@ WRONG = {
 def test_a_wrong_argument_is_one_line(pair, orbit, name):
     with pytest.raises(gm.InputError) as caught:
         WRONG[name](pair, orbit)
+    assert "\n" not in str(caught.value)
+    assert len(str(caught.value)) < 200
+
+
+@pytest.mark.parametrize(
+    ("names", "limits"),
+    [
+        (("nu",), ((0.6, 0.7),)),
+        (("nu", "damping", "backlash"), ((0.6, 0.7), (1, 10), (0.01, 0.1))),
+        ("nu", ((0.6, 0.7), (1, 10))),
+        (("nu", "nu"), ((0.6, 0.7), (0.6, 0.7))),
+        (("nu", "damping"), ((0.6, 0.7),)),
+        (("nu", "damping"), None),
+        (("nu", "damping"), ((0.6, 0.7), None)),
+    ],
+)
+def test_wrong_parameters_of_a_curve_are_one_line(orbit, names, limits):
+    point = gm.SpecialPoint("fold", 0.7, {"nu": 0.7}, orbit)
+    with pytest.raises(gm.InputError, match=r"found .*; allowed ") as caught:
+        gm.follow_special(point, names, limits)
     assert "\n" not in str(caught.value)

@@ -97,6 +97,20 @@ def test_a_sweep_is_its_single_runs(pair):
     assert np.isnan(cell.extremum_y_rel[count:]).all()
 
 
+@pytest.mark.parametrize("direction", [None, "up"])
+@pytest.mark.parametrize(
+    ("name", "values"), [("tolerance", [1e-3, 1e-12]), ("samples_per_period", [4, 64])]
+)
+def test_a_sweep_over_a_setting_gives_each_run_its_own(pair, name, values, direction):
+    settings = {"revolutions": 1, "direction": direction, "loads": True}
+    found = gm.sweep(pair, "c-material", [0.9], over={name: values}, **settings).squeeze()
+    for i, value in enumerate(values):
+        one = gm.sweep(pair.replace(**{name: value}), "c-material", [0.9], **settings).squeeze()
+        for measured in ("y_max", "transmission_error_range"):
+            assert found[measured][i] == one[measured]
+    assert found.transmission_error_range[0] != found.transmission_error_range[1]
+
+
 @pytest.mark.parametrize("direction", ["up", "down"])
 def test_a_sweep_in_a_direction_goes_on_from_run_to_run(pair, direction):
     nu = [0.70, 0.72, 0.71]
@@ -119,7 +133,27 @@ WRONG = {
     "twice": lambda pair: gm.sweep(pair, "c-both", [0.7, 0.7]),
     "direction": lambda pair: gm.sweep(pair, "c-both", [0.7, 0.8], direction="left"),
     "over": lambda pair: gm.sweep(pair, "c-both", 0.7, over={"backlsh": [1]}),
-    "over a pair of values": lambda pair: gm.sweep(pair, "c-both", 0.7, over={"eccentricity": [0]}),
+    "over a text": lambda pair: gm.sweep(pair, "c-both", 0.7, over={"backlash": "40 um"}),
+    "over two values": lambda pair: gm.sweep(
+        pair, "c-both", 0.7, over={"eccentricity": [["0 um", "1 um"]]}
+    ),
+    "over nothing": lambda pair: gm.sweep(pair, "c-both", 0.7, over={"backlash": []}),
+    "over a number": lambda pair: gm.sweep(pair, "c-both", 0.7, over=5),
+    "over one value": lambda pair: gm.sweep(pair, "c-both", 0.7, over={"backlash": 5}),
+    "over no name": lambda pair: gm.sweep(pair, "c-both", 0.7, over={3: [1]}),
+    "variant None": lambda pair: gm.simulate(pair, None, 0.66),
+    "variants 5": lambda pair: gm.sweep(pair, 5, 0.66),
+    "a list of variants": lambda pair: gm.simulate(pair, ["c-both"], 0.66),
+    "a list of nu": lambda pair: gm.simulate(pair, "c-both", [0.66]),
+    "nested nu": lambda pair: gm.sweep(pair, "c-both", [[0.66], [0.7, 0.8]]),
+    "nu as a mapping": lambda pair: gm.sweep(pair, "c-both", {"nu": 0.66}),
+    "pair None": lambda _: gm.simulate(None, "c-both", 0.66),
+    "pair by name": lambda _: gm.sweep("paper", "c-both", 0.66),
+    "pair of a map": lambda _: gm.campbell("paper", "c-both", 0.66),
+    "quantity": lambda pair: gm.campbell(pair, "c-both", 0.66, quantity=["y"], revolutions=1),
+    "order": lambda pair: gm.campbell(pair, "c-both", 0.66, highest_order="5"),
+    "no run": lambda _: gm.spectrum(None),
+    "run as a start": lambda pair: gm.sweep(pair, "c-both", 0.7, start=xr.Dataset()),
     "no frequency": lambda pair: gm.sweep(pair, "c-both", []),
     "no variant": lambda pair: gm.sweep(pair, [], 0.7),
 }
@@ -130,6 +164,7 @@ def test_a_wrong_argument_is_one_line(pair, name):
     with pytest.raises(gm.InputError) as caught:
         WRONG[name](pair)
     assert "\n" not in str(caught.value)
+    assert len(str(caught.value)) < 200
 
 
 def test_the_library_loads_neither_snakemake_nor_matplotlib_nor_posix_modules(tmp_path):

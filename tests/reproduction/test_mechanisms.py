@@ -5,13 +5,13 @@ import math
 
 import numpy as np
 import pytest
+import xarray as xr
 from scipy.linalg import expm
 from scipy.optimize import brentq
 
-from gearmesh.interface.branches import follow
 from gearmesh.interface.orbits import find_orbit
 from gearmesh.reproduction.mechanisms import bands, files, tables
-from gearmesh.reproduction.mechanisms.answers import Points, special_table, time_constant
+from gearmesh.reproduction.mechanisms.answers import Points, special_table, time_constant, windows
 from gearmesh.reproduction.mechanisms.explanations import mechanisms
 from gearmesh.reproduction.mechanisms.orbits import WITHOUT_SUPPORTS, branches, doubled
 
@@ -148,11 +148,39 @@ def test_a_band_with_smooth_edges_is_told_from_one_with_steps():
 
 
 def test_the_damping_of_the_mesh_vanishes_towards_the_grazing(pair):
-    branch = follow(find_orbit(pair, "c-lubricant", 1.05), "nu", (1.04, 1.13))
-    table = tables.table("c-lubricant", [branch])
-    times = [time_constant(table, pair, "c-lubricant", nu) for nu in (1.05, 1.1, 1.128)]
-    orbit = find_orbit(pair, "c-lubricant", 1.1)
+    times = [time_constant(pair, "c-lubricant", nu) for nu in (1.05, 1.1, 1.12, 1.128)]
+    orbit = find_orbit(pair, "c-lubricant", 1.12)
     bodies, mesh = np.abs(orbit.multipliers[[0, 2]])
-    assert times[1] == pytest.approx(-1.0 / math.log(mesh), rel=0.02)
+    assert times[2] == pytest.approx(-1.0 / math.log(mesh), rel=1e-9)
     assert bodies > mesh  # the bodies on their bearings are not what the answer is about
-    assert times[0] < 0.5 * times[1] < 0.05 * times[2]
+    assert times[0] < 0.5 * times[1] < 0.2 * times[2] < 0.1 * times[3]
+    assert math.isnan(time_constant(pair, "c-lubricant", 1.15))  # nothing is damped in contact
+
+
+def test_the_windows_in_which_most_phases_lose_contact_are_all_named():
+    nu = np.linspace(0.6, 0.7, 6)
+    lost = np.zeros((1, 6, 4))
+    lost[0, [1, 2, 4, 5], :3] = lost[0, [2, 4], 3] = lost[0, 3, 0] = 0.2
+    y_max = np.array([1.0, 2.1, 2.1, 2.1, 3.1, 3.1])[None, :, None] * np.ones((1, 6, 4))
+    axes = "revolutions", "nu", "phase"
+    phases = xr.Dataset(
+        {
+            "contact_loss_fraction": (axes, lost),
+            "share": (axes[:2], (lost > 0.05).mean(axis=2)),
+            "y_max_rel": (axes, y_max),
+        },
+        {"nu": nu},
+    )
+    columns = {
+        "variant": ["c-lubricant"] * 6,
+        "stability": [1, 1, 1, 1, -1, -1],
+        "branch": [0, 0, 1, 1, 2, 2],
+        "periods": [3, 3, 1, 1, 5, 5],
+        "nu": [0.6, 0.67, 0.6, 0.71, 0.6, 0.71],
+        "y_max_rel": [2.0, 2.0, 3.0, 3.0, 2.1, 2.1],
+    }
+    branches = xr.Dataset({name: ("point", values) for name, values in columns.items()})
+    one, other = windows(phases, branches)
+    assert (one["from"], one["to"], one["periods"]) == (nu[1], nu[2], 3)
+    assert one["all"] == (nu[2], nu[2]) and not one["last"]
+    assert (other["from"], other["periods"], other["last"]) == (nu[4], 1, True)

@@ -126,6 +126,8 @@ def test_a_pair_cannot_be_changed_in_place(pair):
     ("changes", "message"),
     [
         ({"backlsh": "40 um"}, "backlsh: unknown key (did you mean 'backlash'?)"),
+        ({"torqe": "40 N m"}, "torqe: unknown key (did you mean 'torque'?)"),
+        ({"xyz": 1}, "xyz: unknown key; 'gearmesh parameters' lists all parameters"),
         ({"backlash": "4 kg"}, "backlash: found '4 kg'; unit 'kg' is of another kind"),
         ({"backlash": 0.04}, "backlash: found 0.04; unit missing; expected: a length"),
         ({"teeth": 2}, "teeth: found 2; out of range; allowed is 3 to 1000"),

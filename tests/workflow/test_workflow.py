@@ -199,7 +199,7 @@ INCREMENTS = {
                {"branches", *AFTER_BRANCHES}),
     "why": ("notebooks/why.ipynb", "## Basins", "## The basins",
             {"why", "notebook_pages", *REPORTED}),
-    "solver": ("src/gearmesh/solvers/simulation.py", '"""', '""" ', EVERYTHING),
+    "solver": ("src/gearmesh/solvers/reduced/runs.py", '"""', '""" ', EVERYTHING),
     "one stage": ("src/gearmesh/pipeline/stages/claims.py", '"""Check the numbers', '"""Check all',
                   {"printed", "ledger", *REPORTED}),
     "command": ("workflow/rules/claims.smk", "python -m gearmesh.pipeline ledger",

@@ -9,6 +9,7 @@ from typing import NoReturn
 
 from gearmesh import __version__
 from gearmesh.errors import InputError
+from gearmesh.garbage import search_rarely
 
 BAD_INPUT = 2
 INTERRUPTED = 130
@@ -73,6 +74,7 @@ def _actions(parser: argparse.ArgumentParser) -> list[argparse.Action]:
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run the command; returns the exit status, 2 for bad input."""
+    search_rarely()
     for stream in (sys.stdout, sys.stderr):
         if hasattr(stream, "reconfigure"):
             stream.reconfigure(errors="replace")  # Greek letters on a terminal that has none

@@ -62,8 +62,7 @@ class Hashes:
 
     def _hash(self, name: str) -> str | None:
         try:
-            with (self._folder / name).open("rb", buffering=0) as file:
-                return hashlib.file_digest(file, "sha256").hexdigest()
+            return hashlib.sha256((self._folder / name).read_bytes()).hexdigest()
         except OSError:
             return None
 

@@ -15,14 +15,16 @@ from gearmesh.interface.orbits import REGIMES
 from gearmesh.interface.periodic import periodic_problem
 from gearmesh.interface.statements import (
     Start,
-    check_whole,
     read_lengths,
     read_variant,
+    read_whole,
+    several,
     with_settings,
 )
 from gearmesh.model.problem import Problem
 from gearmesh.model.variants import Variant
 from gearmesh.study.pair import Pair
+from gearmesh.study.reading.schema import shown
 
 _MOST_REVOLUTIONS = 100_000
 
@@ -65,7 +67,8 @@ def attractors(
         A label depends on the attractor alone, and so is the same in every dataset: the period and
         the stroboscopic point (y, dy/dτ_s) of greatest y at mesh phase 0, the middle of the C_max
         pulse, in static deflections; or the kind of a motion that is no orbit. Orbits are in the
-        order of period and y_max; the other kinds follow.
+        order of period and y_max; the other kinds follow. `multipliers` are complex, so
+        ``to_netcdf`` and ``xarray.open_dataset`` need ``engine="netcdf4", auto_complex=True``.
 
     Raises
     ------
@@ -80,7 +83,7 @@ def attractors(
     ['periodic']
     """
     problem = periodic_problem(pair, variant, nu)
-    check_whole("revolutions", revolutions, 1, _MOST_REVOLUTIONS)
+    revolutions = read_whole("revolutions", revolutions, 1, _MOST_REVOLUTIONS)
     moved = map_of(problem)
     if starts is None:
         states = np.array([moved.start(problem), *dynamics.grid(problem)])
@@ -142,7 +145,7 @@ def basins(
     (1, 2, 2)
     """
     problem = periodic_problem(pair, variant, nu)
-    check_whole("revolutions", revolutions, 1, _MOST_REVOLUTIONS)
+    revolutions = read_whole("revolutions", revolutions, 1, _MOST_REVOLUTIONS)
     heights, rates = (
         _once(name, read_lengths(pair, name, values)) for name, values in (("y", y), ("v", v))
     )
@@ -171,7 +174,7 @@ def basins(
 
 def _sequence(name: str, values: object) -> Sequence[Start]:
     if not isinstance(values, Sequence) or isinstance(values, str) or not values:
-        raise InputError(f"{name}: found {values!r}; allowed is a list of (y, dy/dtau_s)")
+        raise InputError(f"{name}: found {shown(values)}; allowed is a list of (y, dy/dtau_s)")
     return values
 
 
@@ -185,10 +188,10 @@ def _once(name: str, values: np.ndarray) -> np.ndarray:
 def _phases(pair: Pair, phase: object) -> np.ndarray:
     if phase is None:
         return np.array([pair.initial_phase])
-    several = np.atleast_1d(np.asarray(phase)).tolist()
-    if not several:
+    phases = several(phase)
+    if not phases:
         raise InputError("phase: none given; allowed is one phase or several")
-    return np.array([pair.replace(initial_phase=one).initial_phase for one in several])
+    return np.array([pair.replace(initial_phase=one).initial_phase for one in phases])
 
 
 def _described(found: Sequence[Attractor], pair: Pair, multipliers: int) -> xr.Dataset:

@@ -10,16 +10,14 @@ import xarray as xr
 
 from gearmesh.dynamics.continuation import branches, special_curves, special_points
 from gearmesh.dynamics.continuation.curves import Family
+from gearmesh.dynamics.periodic.shots import Shot
 from gearmesh.errors import InputError
 from gearmesh.interface.lengths import with_lengths
 from gearmesh.interface.orbits import Orbit
+from gearmesh.interface.parameters import Limits, declared, number_of, read_limits, with_number
+from gearmesh.interface.statements import read_whole
 from gearmesh.model.problem import Problem
-from gearmesh.study.alternatives import DECLARED
-from gearmesh.study.pair import Pair
-from gearmesh.study.reading import units
-
-Limits = tuple[object, object]
-"""Ends of a range: numbers in the parameter's unit, or texts with units."""
+from gearmesh.study.reading.schema import shown
 
 
 @dataclass(frozen=True)
@@ -43,6 +41,24 @@ class SpecialPoint:
     nu: float
     parameters: dict[str, float]
     orbit: Orbit = field(repr=False)
+
+    def double_period(self) -> Orbit:
+        """Return an orbit of twice the period, close to this flip, from which to follow its branch.
+
+        Raises
+        ------
+        InputError
+            If the point is of another kind.
+        NoOrbit
+            If there is none nearby.
+        """
+        if self.kind != "flip":
+            raise InputError(f"kind: found {self.kind!r}; only at a flip does the period double")
+        (name,) = self.parameters
+        family, _ = _family(self.orbit, (name,))
+        bare = special_points.SpecialPoint(self.kind, self.nu, self.parameters, self.orbit.found)
+        found, value = branches.double_period(bare, family)
+        return _at_value(self.orbit, name, value, found)
 
 
 @dataclass(frozen=True)
@@ -71,12 +87,11 @@ class Branch:
         return self.found.ends
 
     def at(self, point: int) -> Orbit:
-        """Return the orbit at a point of the branch."""
-        found, orbit = self.found.orbits[point], self.orbit
-        pair = orbit.pair
-        if self.parameter != "nu":
-            pair = _replaced(pair, self.parameter, float(self.found.values[point]))
-        return Orbit(pair, orbit.variant, found.problem.nu, found)
+        """Return the orbit at a point of the branch; negative numbers count from its end."""
+        size = len(self.found.points)
+        point = read_whole("point", point, -size, size - 1)
+        found, value = self.found.orbits[point], float(self.found.values[point])
+        return _at_value(self.orbit, self.parameter, value, found)
 
     @cached_property
     def special(self) -> list[SpecialPoint]:
@@ -90,7 +105,8 @@ class Branch:
         -------
         xarray.Dataset
             Over ``point``: the parameter, `nu`, `y_max`, `y_min`, `stable`, `neutral`, and
-            `multipliers` (complex, over ``multiplier`` too). Lengths as in `Orbit.to_dataset`.
+            `multipliers` (complex, over ``multiplier`` too). Lengths as in `Orbit.to_dataset`,
+            whose notes state how to write the dataset.
         """
         found, pair = self.found, self.orbit.pair
         dataset = with_lengths(
@@ -110,7 +126,7 @@ class Branch:
         stated = {"units": "1", "long_name": "Floquet multipliers"}
         dataset["multipliers"] = (("point", "multiplier"), found.multipliers, stated)
         if self.parameter != "nu":
-            unit, what = _declared(pair, self.parameter)
+            unit, what = declared(pair, self.parameter)
             stated = {"units": unit, "long_name": what}
             dataset[self.parameter] = ("point", found.values, stated)
         dataset.attrs = {"variant": self.orbit.variant.name, "parameters": pair.canonical()}
@@ -125,9 +141,11 @@ def follow(orbit: Orbit, parameter: str, limits: Limits) -> Branch:
     orbit : Orbit
         Where to begin.
     parameter : str
-        ``"nu"``, or any parameter of the pair that is a single number.
+        ``"nu"``, or any parameter of the pair that is a single number, or the same for both
+        wheels.
     limits : tuple
-        Lowest and highest value, each a number in the parameter's unit or a text with its unit.
+        Lowest and highest value, each a number in the parameter's unit or a text with its unit,
+        such as ``"5 y_st"`` for a length or ``"3000 rpm"`` for ``"nu"``.
 
     Returns
     -------
@@ -143,9 +161,11 @@ def follow(orbit: Orbit, parameter: str, limits: Limits) -> Branch:
     InputError
         One line, if an argument is wrong.
     """
+    if not isinstance(orbit, Orbit):
+        raise InputError(f"orbit: found {shown(orbit)}; allowed is an Orbit of find_orbit")
     family, (value,) = _family(orbit, (parameter,))
     found = branches.follow(
-        orbit.found, parameter, _limits(orbit.pair, parameter, limits), family, value
+        orbit.found, parameter, read_limits(orbit.pair, parameter, limits), family, value
     )
     return Branch(orbit, found)
 
@@ -171,7 +191,7 @@ class SpecialCurve:
         }
         dataset = with_lengths(heights, pair)
         for name, values in zip(self.found.parameters, self.found.values.T, strict=True):
-            unit, what = _declared(pair, name)
+            unit, what = declared(pair, name)
             dataset[name] = ("point", values, {"units": unit, "long_name": what})
         dataset.attrs = {"kind": self.found.kind, "variant": self.point.orbit.variant.name}
         return dataset
@@ -196,31 +216,47 @@ def follow_special(
     NoOrbit
         If the curve cannot be followed; the message gives the reason.
     """
+    if not isinstance(point, SpecialPoint):
+        raise InputError(f"point: found {shown(point)}; allowed is one of Branch.special")
+    names, ranges = _two("parameters", parameters), _two("limits", limits)
     orbit = point.orbit
-    family, values = _family(orbit, parameters)
+    family, values = _family(orbit, names)
+    if names[0] == names[1]:
+        raise InputError(f"parameters: found {names[0]!r} twice; allowed are two different ones")
     first, second = (
-        _limits(orbit.pair, name, ends) for name, ends in zip(parameters, limits, strict=True)
+        read_limits(orbit.pair, name, ends) for name, ends in zip(names, ranges, strict=True)
     )
     bare = special_points.SpecialPoint(point.kind, point.nu, point.parameters, orbit.found)
-    found = special_curves.follow_special(bare, parameters, (first, second), family, values)
+    found = special_curves.follow_special(bare, names, (first, second), family, values)
     return SpecialCurve(point, found)
+
+
+def _two(name: str, values: object) -> tuple[Any, Any]:
+    """Return what a curve in two parameters needs of each."""
+    if not isinstance(values, tuple | list) or len(values) != 2:
+        raise InputError(f"{name}: found {shown(values)}; allowed are two, one for each parameter")
+    return values[0], values[1]
 
 
 def _special(point: special_points.SpecialPoint, orbit: Orbit) -> SpecialPoint:
     """Return a special point with the pair that it belongs to."""
-    pair = orbit.pair
+    found = orbit
     for name, value in point.parameters.items():
-        if name != "nu":
-            pair = _replaced(pair, name, value)
-    found = Orbit(pair, orbit.variant, point.nu, point.orbit)
+        found = _at_value(found, name, value, point.orbit)
     return SpecialPoint(point.kind, point.nu, dict(point.parameters), found)
+
+
+def _at_value(orbit: Orbit, name: str, value: float, found: Shot) -> Orbit:
+    """Return an orbit that was found at a value of a parameter of another one."""
+    pair = orbit.pair if name == "nu" else with_number(orbit.pair, name, value)
+    return Orbit(pair, orbit.variant, found.problem.nu, found)
 
 
 def _family(orbit: Orbit, names: tuple[str, ...]) -> tuple[Family, tuple[float, ...]]:
     """Return the problems over some parameters, and the values of these at an orbit."""
     for name in names:
-        _declared(orbit.pair, name)
-    values = tuple(orbit.nu if name == "nu" else float(getattr(orbit.pair, name)) for name in names)
+        declared(orbit.pair, name)
+    values = tuple(orbit.nu if name == "nu" else number_of(orbit.pair, name) for name in names)
 
     def problem(*stated: float) -> Problem:
         pair, nu = orbit.pair, orbit.nu
@@ -228,42 +264,10 @@ def _family(orbit: Orbit, names: tuple[str, ...]) -> tuple[Family, tuple[float, 
             if name == "nu":
                 nu = value
             else:
-                pair = _replaced(pair, name, value)
+                pair = with_number(pair, name, value)
         return pair.problem(orbit.variant, nu)
 
     if names == ("nu",):  # no parameter of the pair changes, so it need not be read again
         return branches.field_family(orbit.found.problem, "nu"), values
     made: Callable[..., Problem] = problem
     return made, values
-
-
-def _replaced(pair: Pair, name: str, value: float) -> Pair:
-    unit, _ = _declared(pair, name)
-    return pair.replace(**{name: value if unit == "1" else f"{value!r} {unit}"})
-
-
-def _declared(pair: Pair, name: str) -> tuple[str, str]:
-    """Return unit and meaning of a parameter that can be followed."""
-    if name == "nu":
-        return "1", "mesh frequency nu_s"
-    if name in DECLARED:
-        value = getattr(pair, name)
-        if isinstance(value, float):
-            return DECLARED[name]["unit"], DECLARED[name]["description"]
-        raise InputError(f"{name}: found {value!r}; allowed are single real numbers")
-    raise InputError(f"{name}: no such parameter; 'gearmesh parameters' lists all")
-
-
-def _limits(pair: Pair, name: str, limits: Limits) -> tuple[float, float]:
-    """Read the ends of a range."""
-    unit, _ = _declared(pair, name)
-    try:
-        low, high = (
-            units.parse(end, unit) if isinstance(end, str) else float(end)  # type: ignore[arg-type]
-            for end in limits
-        )
-    except (TypeError, ValueError) as error:
-        raise InputError(f"limits of {name}: found {limits!r}; {error}") from None
-    if not low < high:
-        raise InputError(f"limits of {name}: found {limits!r}; allowed is (low, high)")
-    return low, high

@@ -9,9 +9,10 @@ from gearmesh.dynamics.attraction.lyapunov import spectrum_of
 from gearmesh.interface.periodic import periodic_problem
 from gearmesh.interface.statements import (
     Start,
-    check_whole,
+    check_pair,
     read_frequencies,
     read_variant,
+    read_whole,
     with_settings,
 )
 from gearmesh.model.variants import Variant
@@ -67,9 +68,10 @@ def lyapunov_spectrum(
     >>> bool(found.exponents[0, 0] < 0.0)
     True
     """
+    check_pair(pair)
     nus = read_frequencies(nu, pair)
-    check_whole("periods", periods, 8, _MOST_PERIODS)
-    check_whole("transient", transient, 0, _MOST_PERIODS)
+    periods = read_whole("periods", periods, 8, _MOST_PERIODS)
+    transient = read_whole("transient", transient, 0, _MOST_PERIODS)
     begun = with_settings(pair, start)
     problems = [periodic_problem(begun, variant, one) for one in nus]
     spectra = [spectrum_of(one, periods, transient) for one in problems]

@@ -10,12 +10,14 @@ from gearmesh.dynamics.periodic import general_search, orbits
 from gearmesh.dynamics.periodic.general_orbits import GeneralOrbit
 from gearmesh.dynamics.periodic.shots import Shot
 from gearmesh.dynamics.starts import coordinates
-from gearmesh.errors import InputError, NoOrbit
+from gearmesh.errors import NoOrbit
 from gearmesh.interface.lengths import with_lengths
 from gearmesh.interface.statements import (
     Start,
+    check_pair,
     read_frequency,
     read_variant,
+    read_whole,
     with_settings,
 )
 from gearmesh.model.contact import CONTACT_LOSS, INVERSE_MESH, NORMAL_MESH
@@ -36,6 +38,9 @@ REGIMES = {
 @dataclass(frozen=True)
 class Orbit:
     """A periodic orbit of a gear pair.
+
+    Four properties certify its numbers: `residual`, `extremum_margin`, `least_force` and
+    `multiplier_error`.
 
     Attributes
     ----------
@@ -107,6 +112,35 @@ class Orbit:
         """Distance between the states at the two ends of one period, in y_st."""
         return self.found.residual
 
+    @property
+    def extremum_margin(self) -> float:
+        """Least distance of an extremum of y from the ends of its regime, in y_st.
+
+        It is near 0 if the orbit grazes, and negative if an event was missed. An orbit of the
+        general solver, which checks its events itself, has not-a-number.
+        """
+        if isinstance(self.found, GeneralOrbit):
+            return float("nan")
+        return self.reduced.certificate.extremum_margin
+
+    @property
+    def least_force(self) -> float:
+        """Least force between flanks that touch, in F_st; infinite if none do.
+
+        If it is negative, the damping law pulls the flanks together.
+        """
+        if isinstance(self.found, GeneralOrbit):
+            return self.found.response.least_contact_force
+        return self.reduced.certificate.least_force
+
+    @property
+    def multiplier_error(self) -> float:
+        """Estimated error of `multipliers`: their change when they are computed with finer steps.
+
+        In the reduced system it includes the error of their product by Liouville's formula.
+        """
+        return self.found.multiplier_error
+
     def to_dataset(self, samples_per_period: int = 256) -> xr.Dataset:
         """Return the orbit with its time course over its own period.
 
@@ -116,8 +150,14 @@ class Orbit:
             `y`, `v`, `a` and `regime` over ``time``; `strobe_y` and `strobe_v` (y and dy/dτ_s at
             the initial phase), `y_max`, `y_min`, `stable`, `neutral`, `residual`; `multipliers`.
             Lengths are in mm and, with ``_rel`` appended to the name, in static deflections.
+
+        Notes
+        -----
+        ``to_netcdf(path, engine="netcdf4", auto_complex=True)`` writes the complex `multipliers`,
+        and ``xarray.open_dataset`` reads them with the same two arguments.
         """
-        course = self.found.time_course(samples_per_period)
+        pair = self.pair.replace(samples_per_period=samples_per_period)
+        course = self.found.time_course(pair.samples_per_period)
         lengths: dict[str, tuple[tuple[str, ...], Any, str]] = {
             "y": (("time",), course.y, "relative motion in the mesh"),
             "v": (("time",), course.v, "relative velocity dy/dtau_s (tau_s = Omega_s t)"),
@@ -200,8 +240,8 @@ def find_orbit(
     >>> orbit.stable
     True
     """
-    if isinstance(periods, bool) or not isinstance(periods, int) or not 1 <= periods <= 1000:
-        raise InputError(f"periods: found {periods!r}; allowed is a whole number from 1 to 1000")
+    check_pair(pair)
+    periods = read_whole("periods", periods, 1, 1000)
     chosen, frequency = read_variant(variant), read_frequency(nu, pair)
     check_constant_speed(pair, "an orbit")
     problem = pair.problem(chosen, frequency)
@@ -209,11 +249,15 @@ def find_orbit(
     if isinstance(start, Orbit):
         begun = start.initial_state
     elif start is not None:
-        begun = with_settings(pair, start).problem(chosen, frequency).initial_state
-        begun = begun or state_at(problem)
+        stated = with_settings(pair, start, allowed="(y, dy/dtau_s), or an orbit")
+        begun = stated.problem(chosen, frequency).initial_state or state_at(problem)
     found: Shot
-    if is_reducible(problem):
-        found = orbits.find_orbit(problem, periods, None if begun is None else coordinates(begun))
-    else:
-        found = general_search.find_orbit(replace(problem, initial_state=begun), periods)
+    try:
+        if is_reducible(problem):
+            state = None if begun is None else coordinates(begun)
+            found = orbits.find_orbit(problem, periods, state)
+        else:
+            found = general_search.find_orbit(replace(problem, initial_state=begun), periods)
+    except NoOrbit as error:
+        raise NoOrbit(f"no orbit of period {periods} at nu = {frequency:.6g}: {error}") from None
     return Orbit(pair, chosen, frequency, found)

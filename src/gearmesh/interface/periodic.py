@@ -2,7 +2,7 @@
 
 from gearmesh.dynamics.attraction.maps import map_of
 from gearmesh.errors import InputError, NoOrbit
-from gearmesh.interface.statements import read_frequency, read_variant
+from gearmesh.interface.statements import check_pair, read_frequency, read_variant
 from gearmesh.model.problem import Problem
 from gearmesh.model.variants import Variant
 from gearmesh.study.pair import Pair
@@ -11,6 +11,7 @@ from gearmesh.study.speeds import check_constant_speed
 
 def periodic_problem(pair: Pair, variant: str | Variant, nu: float | str) -> Problem:
     """Return what a request states; raises InputError if the excitation never repeats."""
+    check_pair(pair)
     check_constant_speed(pair, "this request")
     problem = pair.problem(read_variant(variant), read_frequency(nu, pair))
     try:

@@ -1,7 +1,7 @@
 """Simulate one run, or sweep many."""
 
 import itertools
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from typing import Literal
 
@@ -11,19 +11,26 @@ import xarray as xr
 from gearmesh.data.labelled import final_state, grid_dataset, run_dataset
 from gearmesh.dynamics.sweeps import run_chains
 from gearmesh.errors import InputError
+from gearmesh.interface.parameters import number_of
 from gearmesh.interface.statements import (
     Start,
+    check_direction,
+    check_pair,
     read_frequencies,
     read_frequency,
     read_variant,
     read_variants,
+    several,
     with_settings,
 )
+from gearmesh.model.problem import Problem
 from gearmesh.model.variants import Variant
 from gearmesh.solvers import simulation
+from gearmesh.solvers.response import Response
 from gearmesh.study.alternatives import DECLARED
 from gearmesh.study.cases import Case
 from gearmesh.study.pair import Pair
+from gearmesh.study.reading.schema import shown
 from gearmesh.study.speeds import check_constant_speed, is_speed
 
 
@@ -84,6 +91,7 @@ def simulate(
     pair = with_settings(
         pair,
         None if isinstance(start, xr.Dataset) else start,
+        allowed="(y, dy/dtau_s), or the dataset of an earlier run",
         revolutions=revolutions,
         kept_revolutions=kept,
         samples_per_period=samples_per_period,
@@ -150,16 +158,16 @@ def sweep(
     >>> ds.y_max.sizes["nu"]
     11
     """
-    if direction not in (None, "up", "down"):
-        raise InputError(f"direction: found {direction!r}; allowed are 'up', 'down' and None")
+    check_pair(pair)
+    check_direction(direction)
     chosen, nus = read_variants(variants), read_frequencies(nu, pair)
     pair = with_settings(
         pair, start, revolutions=revolutions, kept_revolutions=kept, tolerance=tolerance
     )
-    over = over or {}
+    varied = _read_over(over)
     pairs = [
-        pair.replace(**dict(zip(over, values, strict=True)))
-        for values in itertools.product(*over.values())
+        pair.replace(**dict(zip(varied, values, strict=True)))
+        for values in itertools.product(*varied.values())
     ]
     for one in (pair, *pairs):
         check_constant_speed(one, "each run of a sweep")
@@ -167,41 +175,77 @@ def sweep(
     order = sorted(nus, reverse=direction == "down")
     places = list(itertools.product(chosen, pairs))
     chains = [[one.problem(variant, x) for x in order] for variant, one in places]
-    samples = pair.samples_per_period if loads else 0
-    if direction is None:
-        problems = list(itertools.chain(*chains))
-        found = iter(simulation.simulate(problems, pair.tolerance, samples))
-        responses = [list(itertools.islice(found, len(order))) for _ in chains]
-    else:
-        responses = run_chains(chains, pair.tolerance, samples)
+    responses = _integrated(chains, [one for _, one in places], direction is not None, loads)
     at = {x: i for i, x in enumerate(order)}
     cells = [(i * len(pairs) + j, at[x]) for i in range(len(chosen)) for x in nus
              for j in range(len(pairs))]  # fmt: skip
     rows = [responses[chain][place] for chain, place in cells]
     states = [chains[chain][place] for chain, place in cells] if loads else None
     axes: dict[str, Sequence[object]] = {"variant": [variant.name for variant in chosen], "nu": nus}
-    axes |= {name: _axis(name, values, pair) for name, values in over.items()}
+    axes |= {name: _axis(name, values, pair) for name, values in varied.items()}
     dataset = grid_dataset(rows, pairs * (len(rows) // len(pairs)), axes, states)
-    return _described(dataset, pair, over)
+    return _described(dataset, pair, varied)
+
+
+def _read_over(over: object) -> dict[str, list[object]]:
+    """Return the parameters to vary with the list of their values."""
+    if over is None:
+        return {}
+    if not isinstance(over, Mapping):
+        raise InputError(
+            f"over: found {shown(over)}; allowed is a mapping of names to lists of values"
+        )
+    found: dict[str, list[object]] = {}
+    for name, values in over.items():
+        if not isinstance(name, str):
+            raise InputError(f"over: found the name {shown(name)}; allowed is a text")
+        listed = isinstance(values, Iterable) and not isinstance(values, str | Mapping)
+        found[name] = several(list(values) if isinstance(values, Iterator) else values)
+        if not listed or not found[name]:
+            raise InputError(
+                f"over: {name}: found {shown(values)}; allowed is a list of one value or more"
+            )
+    return found
+
+
+def _integrated(
+    chains: Sequence[Sequence[Problem]], pairs: Sequence[Pair], continued: bool, loads: bool
+) -> list[list[Response]]:
+    """Integrate each chain with the settings of its pair, those with equal settings together.
+
+    Unless the chains are continued, all of their runs begin from their own initial conditions.
+    """
+    settings = [(one.tolerance, one.samples_per_period if loads else 0) for one in pairs]
+    found: dict[int, list[Response]] = {}
+    for tolerance, samples in dict.fromkeys(settings):
+        places = [i for i, stated in enumerate(settings) if stated == (tolerance, samples)]
+        if continued:
+            together = run_chains([chains[i] for i in places], tolerance, samples)
+        else:
+            runs = [problem for i in places for problem in chains[i]]
+            responses = iter(simulation.simulate(runs, tolerance, samples))
+            together = [list(itertools.islice(responses, len(chains[i]))) for i in places]
+        found.update(zip(places, together, strict=True))
+    return [found[i] for i in range(len(chains))]
 
 
 def _check_speeds(nu: object, pairs: Sequence[Pair]) -> None:
     """Refuse speeds where a parameter that is varied gives each another ν_s."""
     if len({one.resonance_speed for one in pairs}) > 1:
-        for value in np.atleast_1d(np.asarray(nu)).tolist():
+        for value in several(nu):
             if is_speed(value):
                 raise InputError(
-                    f"nu: found {value!r}, but ν_s at a speed changes with a parameter in over; "
-                    "allowed are numbers ν_s"
+                    f"nu: found {shown(value)}, but ν_s at a speed changes with a parameter in "
+                    "over; allowed are numbers ν_s"
                 )
 
 
 def _axis(name: str, values: Sequence[object], pair: Pair) -> list[float]:
     """Return the values of a parameter in its unit, as an axis."""
-    found = [getattr(pair.replace(**{name: value}), name) for value in values]
-    for value in found:
+    found = [number_of(pair.replace(**{name: value}), name) for value in values]
+    for stated, value in zip(values, found, strict=True):
         if not isinstance(value, int | float):
-            raise InputError(f"over: {name}: found {value!r}; allowed are single numbers")
+            raise InputError(f"over: {name}: found {shown(stated)}; allowed are single numbers")
     return found
 
 

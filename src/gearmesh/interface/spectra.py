@@ -2,6 +2,7 @@
 
 import json
 from collections.abc import Sequence
+from numbers import Real
 from typing import Literal
 
 import numpy as np
@@ -11,10 +12,17 @@ from gearmesh.data.casefile import LOAD_SAMPLE_FIELDS, SAMPLE_FIELDS
 from gearmesh.data.labelled import run_dataset
 from gearmesh.dynamics.sweeps import run_chains
 from gearmesh.errors import InputError
-from gearmesh.interface.statements import read_frequencies, read_variant, with_settings
+from gearmesh.interface.statements import (
+    check_direction,
+    check_pair,
+    read_frequencies,
+    read_variant,
+    with_settings,
+)
 from gearmesh.model.variants import Variant
 from gearmesh.study.cases import Case
 from gearmesh.study.pair import Pair
+from gearmesh.study.reading.schema import shown
 from gearmesh.study.speeds import check_constant_speed
 
 _SPECTRA = {
@@ -57,12 +65,14 @@ def spectrum(run: xr.Dataset, *quantities: str) -> xr.Dataset:
     >>> float(tooth.force_normal) > 0.0
     True
     """
+    if not isinstance(run, xr.Dataset):
+        raise InputError(f"run: found {shown(run)}; allowed is a dataset, as simulate returns it")
     quantities = quantities or ("force_normal", "transmission_error")
     for name in quantities:
-        if name not in _SPECTRA or name not in run:
+        if not isinstance(name, str) or name not in _SPECTRA or name not in run:
             there = [known for known in _SPECTRA if known in run]
             allowed = f"allowed are {', '.join(there)}" if there else "the run has no time course"
-            raise InputError(f"spectrum: found {name!r}; {allowed}")
+            raise InputError(f"spectrum: found {shown(name)}; {allowed}")
     (dimension,) = run[quantities[0]].dims
     size = run.sizes[dimension]
     teeth = np.ravel(json.loads(run.attrs["parameters"])["teeth"])[0]
@@ -116,8 +126,10 @@ def campbell(
     InputError
         One line, if an argument is wrong.
     """
-    if direction not in (None, "up", "down"):
-        raise InputError(f"direction: found {direction!r}; allowed are 'up', 'down' and None")
+    check_pair(pair)
+    check_direction(direction)
+    if not isinstance(highest_order, Real) or not highest_order >= 0.0:
+        raise InputError(f"highest_order: found {shown(highest_order)}; allowed is 0 or more")
     check_constant_speed(pair, "a map over speeds")
     chosen, nus = read_variant(variant), sorted(read_frequencies(nu, pair))
     pair = with_settings(pair, revolutions=revolutions, kept_revolutions=kept)

@@ -1,9 +1,12 @@
 """Read what callers give: variants, mesh frequencies, initial conditions."""
 
+import operator
 from collections.abc import Iterable, Sequence
 from contextlib import AbstractContextManager
 from importlib.resources import as_file, files
+from numbers import Real
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -12,6 +15,7 @@ from gearmesh.model.variants import Variant, variant
 from gearmesh.study.loading import load_study
 from gearmesh.study.pair import Pair
 from gearmesh.study.reading import units
+from gearmesh.study.reading.schema import shown
 from gearmesh.study.speeds import read_nu_or_speed
 
 Start = tuple[object, object]
@@ -35,14 +39,33 @@ def paper() -> Pair:
         return load_study(path).pair
 
 
+def check_pair(pair: object) -> None:
+    """Raise InputError if an argument is no gear pair."""
+    if not isinstance(pair, Pair):
+        raise InputError(f"pair: found {shown(pair)}; allowed is a Pair, such as gearmesh.paper()")
+
+
+def check_direction(direction: object) -> None:
+    """Raise InputError if runs cannot go on from run to run in a direction."""
+    if direction is not None and not (isinstance(direction, str) and direction in ("up", "down")):
+        raise InputError(f"direction: found {shown(direction)}; allowed are 'up', 'down' and None")
+
+
 def read_variant(value: str | Variant) -> Variant:
     """Return a variant by its name, as ``"c-lubricant"`` or ``"c-material-5x"``."""
-    return value if isinstance(value, Variant) else variant(value)
+    if isinstance(value, Variant):
+        return value
+    if not isinstance(value, str):
+        raise InputError(
+            f"variant: found {shown(value)}; allowed is one name, such as 'c-lubricant' "
+            "(gearmesh variants lists all)"
+        )
+    return variant(value)
 
 
 def read_variants(values: str | Variant | Iterable[str | Variant]) -> list[Variant]:
     """Return one variant or several."""
-    if isinstance(values, str | Variant):
+    if isinstance(values, str | Variant) or not isinstance(values, Iterable):
         values = [values]
     found = [read_variant(value) for value in values]
     if not found:
@@ -52,18 +75,22 @@ def read_variants(values: str | Variant | Iterable[str | Variant]) -> list[Varia
 
 def read_frequency(nu: float | str, pair: Pair) -> float:
     """Return a mesh frequency ν_s, also of a speed; raises InputError if the value is neither."""
+    value = bare(nu)
+    if not isinstance(value, str | Real):
+        raise InputError(
+            f"nu: found {shown(nu)}; allowed is one frequency ν_s, or a speed as '3000 rpm'"
+        )
     try:
-        return read_nu_or_speed(nu.item() if isinstance(nu, np.generic) else nu, pair)
+        return read_nu_or_speed(value, pair)
     except ValueError as error:
-        raise InputError(f"nu: found {nu!r}; {error}") from None
+        raise InputError(f"nu: found {shown(value)}; {error}") from None
 
 
 def read_frequencies(
     nu: float | str | Sequence[float | str] | np.ndarray, pair: Pair
 ) -> list[float]:
     """Return one mesh frequency or several, without repetition."""
-    values = [nu] if isinstance(nu, str) else np.atleast_1d(np.asarray(nu)).tolist()
-    found = [read_frequency(value, pair) for value in values]
+    found = [read_frequency(value, pair) for value in several(nu)]
     if not found:
         raise InputError("nu: none given; allowed is one frequency or several")
     if len(set(found)) < len(found):
@@ -71,18 +98,41 @@ def read_frequencies(
     return found
 
 
-def check_whole(name: str, value: object, low: int, high: int) -> None:
-    """Raise InputError if a value is not a whole number from `low` to `high`."""
-    if isinstance(value, bool) or not isinstance(value, int) or not low <= value <= high:
-        raise InputError(f"{name}: found {value!r}; allowed is a whole number from {low} to {high}")
+def several(values: object) -> list[Any]:
+    """Return one value or several as a list."""
+    return np.atleast_1d(np.asarray(values, object)).tolist()
 
 
-def with_settings(pair: Pair, start: Start | None = None, **settings: object) -> Pair:
-    """Return a pair with the settings that are given, and with an initial condition."""
+def bare(value: Any) -> Any:
+    """Return a number of NumPy or xarray as one of Python, and anything else as it is."""
+    return value.item() if getattr(value, "shape", None) == () else value
+
+
+def read_whole(name: str, value: Any, low: int, high: int) -> int:
+    """Return a whole number; raises InputError if it is none from `low` to `high`."""
+    try:
+        number = None if isinstance(value, bool) else operator.index(value)
+    except TypeError:
+        number = None
+    if number is None or not low <= number <= high:
+        raise InputError(
+            f"{name}: found {shown(value)}; allowed is a whole number from {low} to {high}"
+        )
+    return number
+
+
+def with_settings(
+    pair: Pair, start: Start | None = None, *, allowed: str = "(y, dy/dtau_s)", **settings: object
+) -> Pair:
+    """Return a pair with the settings that are given, and with an initial condition.
+
+    `allowed` says, for the message, what the caller takes as `start`.
+    """
+    check_pair(pair)
     changes = {name: value for name, value in settings.items() if value is not None}
     if start is not None:
         if not isinstance(start, tuple | list) or len(start) != 2:
-            raise InputError(f"start: found {start!r}; allowed is (y, dy/dtau_s), or a dataset")
+            raise InputError(f"start: found {shown(start)}; allowed is {allowed}")
         displacement, velocity = (_length(value) for value in start)
         changes |= {"initial_displacement": displacement, "initial_velocity": velocity}
         changes |= {"initial_coordinates": [], "initial_rates": []}
@@ -94,22 +144,20 @@ def read_lengths(pair: Pair, name: str, values: object) -> np.ndarray:
 
     Each has its unit, or is a number of static deflections.
     """
-    several = values if isinstance(values, Iterable) and not isinstance(values, str) else [values]
-    found = [_read_length(pair, name, value) for value in several]
+    found = [_read_length(pair, name, value) for value in several(values)]
     if not found:
         raise InputError(f"{name}: none given; allowed is one length or several")
     return np.array(found)
 
 
 def _read_length(pair: Pair, name: str, value: object) -> float:
-    value = value.item() if isinstance(value, np.generic) else value
-    y_st = pair.static_deflection
+    value, y_st = bare(value), pair.static_deflection
     try:
         if isinstance(value, str):
             return units.parse(units.scaled(value, "y_st", y_st, "mm"), "mm") / y_st
         return units.parse(value, "1")
     except ValueError as error:
-        raise InputError(f"{name}: found {value!r}; {error}") from None
+        raise InputError(f"{name}: found {shown(value)}; {error}") from None
 
 
 def _length(value: object) -> object:

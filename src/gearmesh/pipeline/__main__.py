@@ -11,6 +11,7 @@ from pathlib import Path
 from gearmesh.data import manifest
 from gearmesh.data.paths import Places
 from gearmesh.errors import InputError
+from gearmesh.garbage import search_rarely
 from gearmesh.pipeline.locks import job
 from gearmesh.pipeline.messages import BAD_INPUT, say
 from gearmesh.pipeline.stages import STAGES, job_name
@@ -19,6 +20,7 @@ from gearmesh.study.loading import load_study
 
 def main() -> None:
     """Run as a job."""
+    search_rarely()
     parser = argparse.ArgumentParser(prog="python -m gearmesh.pipeline", description=__doc__)
     parser.add_argument("stage", choices=STAGES, metavar="STAGE", help=", ".join(STAGES))
     parser.add_argument("study", type=Path, help="the file of the study")

@@ -31,6 +31,12 @@ ATTEMPTS = 3
 
 KERNEL = "python3"
 
+_KERNEL_SETTINGS = """\
+from gearmesh.garbage import search_rarely
+search_rarely()
+c.IPKernelApp.log_level = 'CRITICAL'
+"""
+
 LONGEST = 90
 """Length of a folder in which sockets may be; a name of a socket has 104 characters at most."""
 
@@ -125,7 +131,7 @@ def _prepare_kernel(folder: Path) -> None:
     (kernel / "kernel.json").write_text(json.dumps(described))
     profile = folder / "profile_default"
     profile.mkdir()
-    (profile / "ipython_kernel_config.py").write_text("c.IPKernelApp.log_level = 'CRITICAL'\n")
+    (profile / "ipython_kernel_config.py").write_text(_KERNEL_SETTINGS)
     os.environ |= {
         "JUPYTER_PATH": str(folder),
         "JUPYTER_DATA_DIR": str(folder),

@@ -15,6 +15,7 @@ import time
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cache, cached_property
+from glob import glob
 from pathlib import Path
 
 from gearmesh.data import casefile, manifest, paths, provenance
@@ -164,9 +165,9 @@ class Plan:
         """Return case files that none of the study's jobs has written."""
         if stage != "cases":
             return []
-        there = self.places.cases.glob(f"{arguments[0]}-*/*")
-        names = (path.relative_to(self.places.folder).as_posix() for path in there)
-        return sorted({*names} - found.written.keys())
+        pattern = f"{self.places.cases.name}/{arguments[0]}-*/*"
+        there = glob(pattern, root_dir=self.places.folder, include_hidden=True)
+        return sorted({*there} - found.written.keys())
 
 
 def _faults(recorded: Mapping[str, str], hashes: manifest.Hashes) -> dict[str, str]:

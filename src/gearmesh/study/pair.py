@@ -12,6 +12,7 @@ from typing import Any, NamedTuple, Self
 
 from pydantic import PrivateAttr, model_validator
 
+from gearmesh.errors import InputError
 from gearmesh.model import stiffness
 from gearmesh.model.involute import Involute
 from gearmesh.model.problem import Problem
@@ -20,13 +21,14 @@ from gearmesh.study.alternatives import (
     ALTERNATIVES,
     DECLARED,
     KG_PER_N_S2_MM,
+    NAMES,
     excluded_by,
     with_stored,
 )
 from gearmesh.study.parameters import SETTINGS, Parameters
 from gearmesh.study.problem import problem_of
 from gearmesh.study.reading.provenance import DEFAULT, DERIVED, SETTING, STATED, Statement
-from gearmesh.study.reading.schema import of_wheels, read_declared, validate
+from gearmesh.study.reading.schema import nearest, of_wheels, read_declared, validate
 from gearmesh.study.relative import (
     LEVELS,
     MM_PER_M,
@@ -118,6 +120,10 @@ class Pair(Parameters):
         InputError
             One line: which parameter, what was found, what is allowed.
         """
+        for name in changes:
+            if name not in NAMES:
+                hint = nearest(name, NAMES) or "; 'gearmesh parameters' lists all parameters"
+                raise InputError(f"{name}: unknown key{hint}")
         new = {name: Statement(value) for name, value in changes.items()}
         kept = self._all_statements()
         for name in excluded_by(changes):

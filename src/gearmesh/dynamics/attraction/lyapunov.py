@@ -52,15 +52,16 @@ def lyapunov_spectrum(
         If the motion runs away, or if the excitation does not repeat.
     """
     moved = map_of(problem)
-    frame, growth = np.eye(len(moved.weights)), []
+    frame, stretched = np.eye(len(moved.weights)), []
     before, measured = (math.ceil(count / moved.block) for count in (transient, periods))
     for n in range(-before, measured):
         state, factors = moved.step(state)
         for factor in factors:
             frame, stretch = np.linalg.qr(factor @ frame)
             if n >= 0:
-                growth.append(np.log(np.abs(np.diag(stretch))) / problem.period)
-    parts = np.array([part.mean(axis=0) for part in np.array_split(np.array(growth), _BLOCKS)])
+                stretched.append(stretch.diagonal())
+    growth = np.log(np.abs(stretched)) / problem.period
+    parts = np.array([part.mean(axis=0) for part in np.array_split(growth, _BLOCKS)])
     exponents = np.mean(growth, axis=0)
     errors = parts.std(axis=0, ddof=1) / np.sqrt(_BLOCKS)
     order = np.argsort(-exponents)

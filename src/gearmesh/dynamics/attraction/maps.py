@@ -14,7 +14,13 @@ from gearmesh.dynamics.periodic.shots import Shot
 from gearmesh.dynamics.starts import initial_coordinates, initial_states
 from gearmesh.errors import NoOrbit
 from gearmesh.model.problem import Problem, State
-from gearmesh.solvers.reduced.derivatives.period_map import passage
+from gearmesh.solvers.reduced.derivatives.period_map import (
+    FIXED,
+    Statement,
+    passage_of,
+    statement,
+    trace,
+)
 from gearmesh.solvers.reduced.ensembles import advance, advance_to_phase, laws_of
 from gearmesh.solvers.reduced.runs import is_reducible
 
@@ -104,6 +110,10 @@ class ReducedMap:
     def _laws(self) -> np.ndarray:
         return laws_of(self.problems)
 
+    @cached_property
+    def _stated(self) -> Statement:
+        return statement(self.problem)
+
     @property
     def duration(self) -> np.ndarray:
         """Time of one step, in tau_s."""
@@ -124,7 +134,8 @@ class ReducedMap:
 
     def step(self, state: np.ndarray) -> tuple[np.ndarray, list[np.ndarray]]:
         """Return the state after a step, and factors of the Jacobian."""
-        moved = passage(self.problem, state)
+        points, events, _ = trace(self._stated, np.append(state, 1.0), FIXED, self.problem.nu)
+        moved = passage_of(self._stated, self.problem.nu, points[0], events[0])
         if moved.status != "complete":
             raise NoOrbit(f"the motion ends with {moved.status}")
         return moved.end, [moved.jacobian]

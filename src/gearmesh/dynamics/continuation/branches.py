@@ -6,12 +6,19 @@ from functools import cached_property, partial
 
 import numpy as np
 
-from gearmesh.dynamics.continuation.curves import Curve, Family, Point, clear_phase, stretches
+from gearmesh.dynamics.continuation.curves import Curve, Family, Point
 from gearmesh.dynamics.continuation.special_points import SpecialPoint, special_points
 from gearmesh.dynamics.continuation.suspects import suspects
-from gearmesh.dynamics.continuation.walks import LONGEST_STEP, Piece, joined, points_of, walk
+from gearmesh.dynamics.continuation.walks import (
+    LONGEST_STEP,
+    Piece,
+    check_inside,
+    clear_phase,
+    joined,
+    points_of,
+    walk,
+)
 from gearmesh.dynamics.periodic.shots import Shot
-from gearmesh.errors import NoOrbit
 from gearmesh.model.problem import Problem
 
 _AMPLITUDE = 1e-3  # of the first orbit after a flip
@@ -115,8 +122,7 @@ def follow(
     family = family or field_family(orbit.problem, parameter)
     value = float(getattr(orbit.problem, parameter)) if value is None else value
     low, high = limits
-    if not low <= value <= high:
-        raise NoOrbit(f"{parameter} = {value:.6g} of the orbit is outside {low:.6g} to {high:.6g}")
+    check_inside(parameter, value, low, high)
     phase = orbit.problem.initial_phase
     moved = orbit.at_phase(clear_phase(orbit))
     curve = Curve(
@@ -125,7 +131,7 @@ def follow(
         (high - low,),
         moved.problem.initial_phase,
         moved,
-        stretches=stretches(family, value),
+        stretches=_stretches(family, value),
     )
     start = curve.at(moved, (value,))
     walks = walk(curve, start, (limits,), longest_step)
@@ -150,6 +156,12 @@ def field_family(problem: Problem, *names: str) -> Family:
     """Return the problems that differ from `problem` in the named fields."""
     changed: Callable[..., Problem] = partial(replace, problem)
     return lambda *values: changed(**dict(zip(names, values, strict=True)))
+
+
+def _stretches(family: Family, value: float) -> bool:
+    """Return whether the only parameter of a family is nu."""
+    here = family(value)
+    return here.nu == value and family(1.001 * value) == replace(here, nu=1.001 * value)
 
 
 def _special(pieces: list[Piece]) -> list[tuple[str, Point]]:
@@ -177,8 +189,8 @@ def _each_once(special: list[SpecialPoint]) -> list[SpecialPoint]:
     return kept
 
 
-def double_period(point: SpecialPoint, family: Family | None = None) -> Shot:
-    """Return an orbit of twice the period, close to a flip.
+def double_period(point: SpecialPoint, family: Family | None = None) -> tuple[Shot, float]:
+    """Return an orbit of twice the period, close to a flip, and the parameter there.
 
     Parameters
     ----------
@@ -195,10 +207,10 @@ def double_period(point: SpecialPoint, family: Family | None = None) -> Shot:
     ((parameter, value),) = point.parameters.items()
     family = family or field_family(point.orbit.problem, parameter)
     single = point.orbit.at_phase(clear_phase(point.orbit))
-    phase, stretched = single.problem.initial_phase, stretches(family, value)
+    phase, stretched = single.problem.initial_phase, _stretches(family, value)
     curve = Curve(family, 2 * single.periods, (1.0,), phase, single, stretches=stretched)
     across = np.linalg.svd(single.monodromy + np.eye(len(single.monodromy)))[2][-1]
     normal = np.append(across, 0.0)
     place = np.append(single.state, value) + _AMPLITUDE * normal
     found = curve.point(place, normal, normal)
-    return found.orbit.at_phase(point.orbit.problem.initial_phase)
+    return found.orbit.at_phase(point.orbit.problem.initial_phase), found.values[0]

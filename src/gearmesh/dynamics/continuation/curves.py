@@ -6,6 +6,7 @@ as a fold. The curves are smooth through grazings and folds, so they are followe
 arclength and not by a parameter.
 """
 
+import contextlib
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 from functools import cached_property
@@ -14,10 +15,10 @@ import numpy as np
 
 from gearmesh.dynamics.periodic.orbits import Orbit
 from gearmesh.dynamics.periodic.shots import Shot
-from gearmesh.errors import NoOrbit
+from gearmesh.errors import InputError, NoOrbit
 from gearmesh.model.problem import Problem
 from gearmesh.solvers.reduced.derivatives import curves
-from gearmesh.solvers.reduced.derivatives.curves import LARGEST_RESIDUAL, ROUNDED, is_clear
+from gearmesh.solvers.reduced.derivatives.curves import LARGEST_RESIDUAL, ROUNDED
 from gearmesh.solvers.reduced.derivatives.deviations import SIZE
 from gearmesh.solvers.reduced.derivatives.period_map import (
     STATUSES,
@@ -34,7 +35,6 @@ Family = Callable[..., Problem]
 _MOST_CORRECTIONS = 12
 _CONTRACTION = 0.01  # of the defect: gradients that reduce it so far are used again
 _DIFFERENCE = 1e-5
-_PLACES = 64
 _MOST_STEPS = 64  # in one call of the compiled code
 
 
@@ -160,7 +160,8 @@ class Curve:
                 )
             except np.linalg.LinAlgError as error:
                 raise NoOrbit("the curve is singular here") from error
-            place = place - correction
+            # Where the plane holds a parameter fixed, this is exact.
+            place = np.where(normal == 1.0, origin, place - correction)
             orbit = self._orbit(place)
         if not best < LARGEST_RESIDUAL:
             raise NoOrbit(f"the corrector stops at a residual of {best:.1e}")
@@ -260,7 +261,7 @@ class Curve:
         """Return the next points after `point`, and the length of the step behind them.
 
         The first step is at most `length`, and shorter where the curve bends. Later ones grow. The
-        last point may be outside the limits or far away.
+        last point may be at a limit, outside the limits or far away.
 
         Raises
         ------
@@ -269,7 +270,7 @@ class Curve:
         """
         compiled = self._compiled
         if compiled is None:
-            following, length = self._step_on(point, length)
+            following, length = self._step_on(point, length, limits)
             size = max(following.orbit.y_max, -following.orbit.y_min)
             grown = min(curves.GROWTH * length, longest * max(1.0, size / curves.LARGE))
             return [following], grown
@@ -288,24 +289,48 @@ class Curve:
             raise NoOrbit("it bends too sharply")
         return [self._found(compiled, points[i], events[i]) for i in range(1, len(points))], length
 
-    def _step_on(self, point: Point, length: float) -> tuple[Point, float]:
+    def _step_on(
+        self, point: Point, length: float, limits: tuple[tuple[float, float], ...]
+    ) -> tuple[Point, float]:
         """Return the next point after `point` and the length of the step that reaches it."""
         reason = "it bends too sharply"
         while length > curves.SHORTEST_STEP:
+            place, normal = self._predicted(point, length, limits)
             try:
-                following = self.step(point, length)
-                moved = following.place - point.place - length * point.tangent
+                following = self.point(place, normal, point.tangent)
+                moved, whole = following.place - place, np.linalg.norm(place - point.place)
                 straight = following.tangent @ point.tangent > curves.LEAST_ALIGNMENT
-                if straight and np.linalg.norm(moved) < curves.LARGEST_CORRECTION * length:
+                if straight and np.linalg.norm(moved) < curves.LARGEST_CORRECTION * whole:
                     return following, length
             except NoOrbit as error:
                 reason = str(error)
             length *= 0.5
         raise NoOrbit(reason)
 
+    def _predicted(
+        self, point: Point, length: float, limits: tuple[tuple[float, float], ...]
+    ) -> tuple[np.ndarray, np.ndarray]:
+        """Return the next place, and the normal of the plane in which its point is searched for.
+
+        It is one step ahead along the tangent, or where this step meets a limit of a parameter.
+        Beyond a limit a parameter may have no meaning.
+        """
+        k, share, normal = len(point.place) - len(self.units), 1.0, point.tangent
+        for i, ends in enumerate(np.divide(limits, np.array(self.units)[:, None])):
+            here, change = point.place[k + i], length * point.tangent[k + i]
+            edge = ends[int(change > 0.0)]
+            if abs(edge - here) < share * abs(change):
+                share, normal = abs((edge - here) / change), np.eye(len(point.place))[k + i]
+                reached = edge
+        place = point.place + share * length * point.tangent
+        return (place if share == 1.0 else np.where(normal == 1.0, reached, place)), normal
+
     def _problem(self, values: tuple[float, ...]) -> Problem:
         """Return the problem at values of the parameters, with its state taken at the phase."""
-        problem = self.family(*values)
+        try:
+            problem = self.family(*values)
+        except InputError as error:
+            raise NoOrbit(str(error)) from error
         return (
             problem
             if problem.initial_phase == self.phase
@@ -317,7 +342,8 @@ class Curve:
         return self.like.shot(problem, place[: -len(self.units)], self.periods)
 
     def _values(self, place: np.ndarray) -> tuple[float, ...]:
-        return tuple(float(value) for value in place[-len(self.units) :] * self.units)
+        # Rounded, so that a limit comes out as it was stated.
+        return tuple(float(f"{value:.15g}") for value in place[-len(self.units) :] * self.units)
 
     def _defect(self, orbit: Shot) -> np.ndarray:
         defect = orbit.defect
@@ -335,12 +361,31 @@ class Curve:
             return gradients
         k = orbit.state.size
         for i in range(k if self.condition is None else 0, len(place)):
-            away = _DIFFERENCE * np.eye(len(place))[i]
-            ahead = self._defect(self._orbit(place + away))
-            behind = self._defect(orbit if rough else self._orbit(place - away))
-            difference = (ahead - behind) / (_DIFFERENCE if rough else 2.0 * _DIFFERENCE)
-            gradients[0 if i >= k else k :, i] = difference[0 if i >= k else k :]
+            rows = slice(0 if i >= k else k, None)
+            gradients[rows, i] = self._difference(place, orbit, i, rough)[rows]
         return gradients
+
+    def _difference(self, place: np.ndarray, orbit: Shot, i: int, rough: bool) -> np.ndarray:
+        """Return the derivative of the defect in one component of the place.
+
+        Where a parameter has no values beyond this one, the differences are one-sided.
+        """
+        away = _DIFFERENCE * np.eye(len(place))[i]
+
+        def beside(steps: int) -> np.ndarray:
+            return self._defect(self._orbit(place + steps * away))
+
+        if not rough:
+            with contextlib.suppress(NoOrbit):
+                return (beside(1) - beside(-1)) / (2.0 * _DIFFERENCE)
+        here = self._defect(orbit)
+        try:
+            side, one = 1, beside(1)
+        except NoOrbit:
+            side, one = -1, beside(-1)
+        if rough:
+            return side * (one - here) / _DIFFERENCE
+        return side * (4.0 * one - beside(2 * side) - 3.0 * here) / (2.0 * _DIFFERENCE)
 
     def _differentiate(self, orbit: Shot, gradients: np.ndarray) -> None:
         """Write the gradients that the integration gives."""
@@ -348,26 +393,3 @@ class Curve:
         gradients[:k, :k] = orbit.gradient
         if self.stretches and orbit.stretched is not None:
             gradients[:, k] = orbit.stretched * (-self.units[0] / orbit.problem.nu)
-
-
-def stretches(family: Family, value: float) -> bool:
-    """Return whether the only parameter of a family is nu."""
-    here, there = family(value), family(1.001 * value)
-    return here.nu == value and there == replace(here, nu=1.001 * value)
-
-
-def clear_phase(orbit: Shot) -> float:
-    """Return a mesh phase at which the orbit is far from the ends of its regimes.
-
-    The phase of the orbit's state is kept if it is at least half as far from them as the best
-    phase, or if mesh periods differ, because it fixes the angles of the shafts.
-    """
-    phase = orbit.problem.initial_phase
-    if orbit.repeats_after > 1:
-        return phase
-    backlash = orbit.problem.backlash
-    if not is_clear.py_func(orbit.y, orbit.y_max, orbit.y_min, backlash):  # type: ignore[attr-defined]
-        course = orbit.time_course(_PLACES)
-        away = np.minimum(np.abs(course.y), np.abs(course.y + backlash))
-        phase += int(np.argmax(away)) / _PLACES
-    return float(phase % 1.0)

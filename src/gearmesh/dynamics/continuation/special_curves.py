@@ -7,7 +7,7 @@ from itertools import pairwise
 import numpy as np
 
 from gearmesh.dynamics.continuation.branches import field_family
-from gearmesh.dynamics.continuation.curves import Curve, Family, Point, clear_phase
+from gearmesh.dynamics.continuation.curves import Curve, Family, Point
 from gearmesh.dynamics.continuation.special_points import (
     BACK,
     FRONT,
@@ -17,7 +17,14 @@ from gearmesh.dynamics.continuation.special_points import (
     search,
     torus_test,
 )
-from gearmesh.dynamics.continuation.walks import LONGEST_STEP, joined, points_of, walk
+from gearmesh.dynamics.continuation.walks import (
+    LONGEST_STEP,
+    check_inside,
+    clear_phase,
+    joined,
+    points_of,
+    walk,
+)
 from gearmesh.dynamics.periodic.shots import Shot
 from gearmesh.errors import NoOrbit
 from gearmesh.solvers.reduced.derivatives.variational import VELOCITY
@@ -87,6 +94,8 @@ def follow_special(
     problem = point.orbit.problem
     family = family or field_family(problem, *parameters)
     values = values or tuple(float(getattr(problem, name)) for name in parameters)
+    for name, value, (low, high) in zip(parameters, values, limits, strict=True):
+        check_inside(name, value, low, high)
     moved = point.orbit.at_phase(clear_phase(point.orbit))
     units = tuple(high - low for low, high in limits)
     phase = moved.problem.initial_phase

@@ -5,10 +5,11 @@ from typing import NamedTuple
 
 import numpy as np
 
-from gearmesh.dynamics.continuation.curves import Curve, Point, clear_phase
+from gearmesh.dynamics.continuation.curves import Curve, Point
 from gearmesh.dynamics.continuation.special_points import flip_test
+from gearmesh.dynamics.periodic.shots import Shot
 from gearmesh.errors import NoOrbit
-from gearmesh.solvers.reduced.derivatives.curves import FARTHEST
+from gearmesh.solvers.reduced.derivatives.curves import FARTHEST, is_clear
 
 Limits = tuple[tuple[float, float], ...]
 """Range of each parameter."""
@@ -30,6 +31,7 @@ half the period, behind which the same orbits follow half a period later; at mot
 _FIRST_STEP = 0.25  # of the longest
 _AT_LIMIT = 1e-9  # share of the range of the parameter
 _SAME = 1e-7  # distance between two states that are the same
+_PLACES = 64  # of an orbit, at which its distance from the ends of regimes is taken
 _REACH = 0.3  # length of the branch of half the period on which its flip is searched for
 
 
@@ -73,6 +75,29 @@ def walk(curve: Curve, start: Point, limits: Limits, longest: float) -> tuple[Wa
     return _walk(Piece(curve, [start.reversed()]), limits, longest), ahead
 
 
+def check_inside(name: str, value: float, low: float, high: float) -> None:
+    """Raise `NoOrbit` if a parameter is outside its range where a curve begins."""
+    if not low <= value <= high:
+        raise NoOrbit(f"{name} = {value:.6g} of the orbit is outside {low:.6g} to {high:.6g}")
+
+
+def clear_phase(orbit: Shot) -> float:
+    """Return a mesh phase at which the orbit is far from the ends of its regimes.
+
+    The phase of the orbit's state is kept if it is at least half as far from them as the best
+    phase, or if mesh periods differ, because it fixes the angles of the shafts.
+    """
+    phase = orbit.problem.initial_phase
+    if orbit.repeats_after > 1:
+        return phase
+    backlash = orbit.problem.backlash
+    if not is_clear.py_func(orbit.y, orbit.y_max, orbit.y_min, backlash):  # type: ignore[attr-defined]
+        course = orbit.time_course(_PLACES)
+        away = np.minimum(np.abs(course.y), np.abs(course.y + backlash))
+        phase += int(np.argmax(away)) / _PLACES
+    return float(phase % 1.0)
+
+
 def joined(back: Walk, ahead: Walk) -> list[Piece]:
     """Return the pieces of both walks in the direction of the second."""
     if back is ahead:
@@ -91,6 +116,8 @@ def _walk(piece: Piece, limits: Limits, longest: float) -> Walk:
     length = _FIRST_STEP * longest
     while sum(len(piece.points) for piece in pieces) < MOST_POINTS:
         curve, point = pieces[-1].curve, pieces[-1].points[-1]
+        if _leaves(curve, point, limits):
+            return Walk(pieces, LIMIT, [])
         try:
             phase = clear_phase(point.orbit)
             if phase != curve.phase:
@@ -116,6 +143,16 @@ def _walk(piece: Piece, limits: Limits, longest: float) -> Walk:
         if max(point.orbit.y_max, -point.orbit.y_min) > FARTHEST:
             return Walk(pieces, FAR, [])
     return Walk(pieces, "too many points", [])
+
+
+def _leaves(curve: Curve, point: Point, limits: Limits) -> bool:
+    """Return whether the curve leaves the range of a parameter at a point."""
+    slopes = point.tangent[-len(limits) :]
+    ends = (high if slope > 0.0 else low for slope, (low, high) in zip(slopes, limits, strict=True))
+    return any(
+        abs(end - value) <= _AT_LIMIT * unit
+        for end, value, unit in zip(ends, point.values, curve.units, strict=True)
+    )
 
 
 def _halves(curve: Curve) -> bool:

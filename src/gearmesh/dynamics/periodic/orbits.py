@@ -333,7 +333,7 @@ def find_orbit(problem: Problem, periods: int = 1, start: np.ndarray | None = No
             continue
         if max(orbit.y_max, -orbit.y_min) < FARTHEST:
             return orbit
-    raise NoOrbit(f"no orbit of period {periods} at nu = {problem.nu:.6g}: {reason}")
+    raise NoOrbit(reason or "the motions that were found are too large")
 
 
 def correct(problem: Problem, state: np.ndarray, periods: int = 1) -> Orbit:

@@ -1,16 +1,18 @@
 """What the datasets say in numbers: the answers of the report, and the mechanisms of claims."""
 
-from collections import defaultdict
+import math
+from collections import Counter, defaultdict
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
 import numpy as np
 import xarray as xr
 
-from gearmesh.model.variants import variant as read_variant
+from gearmesh.errors import NoOrbit
+from gearmesh.interface.orbits import find_orbit
 from gearmesh.reproduction.mechanisms.bands import NEAR_FIRST_JUMP, band
 from gearmesh.reproduction.mechanisms.bands import VARIANTS as BANDED
-from gearmesh.reproduction.mechanisms.starts import VARIANT
+from gearmesh.reproduction.mechanisms.starts import JUMPED, VARIANT
 from gearmesh.reproduction.mechanisms.sweeps import DIRECTIONS, SEPARATE
 from gearmesh.reproduction.mechanisms.tables import Row
 from gearmesh.study.pair import Pair
@@ -19,6 +21,7 @@ KINDS = ("switching", "flip", "grazing_front", "grazing_back", "fold", "torus", 
 """Kinds of special points in the order of the table."""
 
 _CLOSE = 2e-3  # in ν_s, to an end of a stable piece of a branch
+_HALF = 0.5  # of the starting phases
 
 
 class Points:
@@ -87,10 +90,10 @@ def answers(
         "five_of": lambda observable, name: _threshold(thresholds, observable, name),
         "five_of_jump": lambda name: _first_jump(thresholds, name),
         "doubled": _doubled(datasets["branches"], points),
-        "starts": _starts(datasets["phases"]),
+        "windows": windows(datasets["phases"], datasets["branches"]),
         "basins": _shares(datasets["basins"]),
         "sweep": _sweep_jumps(datasets["sweeps"]),
-        "decay": lambda nu: time_constant(datasets["branches"], pair, VARIANT, nu),
+        "decay": lambda nu: time_constant(pair, VARIANT, nu),
         "bands": _bands(datasets["bands"], thresholds),
         "changes": _changes(datasets["bands"]),
         "cusps": _cusps(datasets["special_curves"]),
@@ -142,15 +145,55 @@ def _doubled(branches: xr.Dataset, points: Points) -> dict[str, float]:
     return found
 
 
-def _starts(phases: xr.Dataset) -> dict[str, float]:
-    """Return where the second rise of the share of starting phases begins, and where it is 1."""
-    nu, share = phases["nu"].values, phases["share"].values[0]
-    jumping = np.flatnonzero(share < 1.0)
-    least = np.flatnonzero(share[nu > 0.73] == share[nu > 0.73].min())
-    return {
-        "from": float(nu[nu > 0.73][least[-1]]),
-        "all": float(nu[min(jumping[-1] + 1, nu.size - 1)]),
-    }
+def windows(phases: xr.Dataset, branches: xr.Dataset) -> list[dict[str, Any]]:
+    """Return the ranges of ν_s in which at least half of all starting phases lose contact.
+
+    Returns
+    -------
+    list of dict
+        `from` and `to` (ends of the range), `all` (the values of ν_s at which every phase does),
+        `last` (whether the range reaches the end of what was computed), and `periods`, the period
+        of the stable orbit that is nearest to most of these runs after the longest time.
+    """
+    first, late = phases.isel(revolutions=0), phases.isel(revolutions=-1)
+    nu, share = first["nu"].values, first["share"].values
+    inside = np.concatenate([[False], share >= _HALF, [False]])
+    ends = np.flatnonzero(np.diff(inside)).reshape(-1, 2)
+    found = []
+    for low, high in ((low, high - 1) for low, high in ends):
+        reached = [
+            _nearest_period(branches, late.isel(nu=i))
+            for i in range(low, high + 1)
+            if late["share"].values[i] > 0.0
+        ]
+        held = nu[low : high + 1]
+        whole = held[share[low : high + 1] == 1.0]
+        found.append(
+            {
+                "from": float(held[0]),
+                "to": float(held[-1]),
+                "all": (float(whole[0]), float(whole[-1])) if whole.size else None,
+                "last": bool(high == nu.size - 1),
+                "periods": Counter(reached).most_common(1)[0][0] if reached else 0,
+            }
+        )
+    return found
+
+
+def _nearest_period(branches: xr.Dataset, runs: xr.Dataset) -> int:
+    """Return the period of the stable orbit whose y_max is nearest to that of most runs."""
+    lost = runs["contact_loss_fraction"].values >= JUMPED
+    middle = float(np.median(runs["y_max_rel"].values[lost]))
+    stable = (branches["variant"] == VARIANT) & (branches["stability"] == 1)
+    points = branches.isel(point=np.flatnonzero(stable))
+    number = points["branch"].values
+    at, nearest, period = float(runs["nu"]), math.inf, 0
+    for branch in np.unique(number):
+        own = points.isel(point=np.flatnonzero(number == branch)).sortby("nu")
+        y_max = np.interp(at, own["nu"], own["y_max_rel"], left=math.inf, right=math.inf)
+        if abs(y_max - middle) < nearest:
+            nearest, period = abs(y_max - middle), int(own["periods"][0])
+    return period
 
 
 def _shares(basins: xr.Dataset) -> list[tuple[float, list[float]]]:
@@ -180,26 +223,24 @@ def _sweep_jumps(sweeps: xr.Dataset) -> dict[str, dict[str, float]]:
     return found
 
 
-def time_constant(branches: xr.Dataset, pair: Pair, variant: str, nu: float) -> float:
+def time_constant(pair: Pair, variant: str, nu: float) -> float:
     """Return the mesh periods in which a deviation in the mesh from the stable orbit falls by e.
 
     Two of the four multipliers belong to the bodies on their bearings. Heavy bodies move alone, so
     their two have the size exp(-ζ w T), with the body's natural frequency w; they are left out.
+    The result is not-a-number if there is no stable orbit of the mesh period.
     """
-    own = (branches["variant"] == variant) & (branches["stability"] == 1)
-    own &= branches["periods"] == 1
-    points = branches.isel(point=np.flatnonzero(own)).sortby("nu")
-    inside = points["nu"].values
-    if not inside.size or not inside[0] <= nu <= inside[-1]:
-        return np.nan
-    parts = (points[f"multipliers_{part}"].values for part in ("real", "imaginary"))
-    sizes = np.hypot(*parts)
-    problem = pair.problem(read_variant(variant), nu)
-    frequency = np.sqrt(problem.bearing_stiffness / problem.body_mass)
-    bodies = np.exp(-problem.bearing_damping_ratio * frequency * 2.0 * np.pi / inside)
-    order = np.argsort(np.abs(sizes - bodies[:, None]), axis=1)
-    mesh = np.take_along_axis(sizes, order[:, 2:], axis=1).max(axis=1)
-    return float(-1.0 / np.log(np.interp(nu, inside, mesh)))
+    try:
+        orbit = find_orbit(pair, variant, nu)
+    except NoOrbit:
+        return math.nan
+    if not orbit.stable:
+        return math.nan
+    problem = orbit.reduced.problem
+    frequency = math.sqrt(problem.bearing_stiffness / problem.body_mass)
+    body = math.exp(-problem.bearing_damping_ratio * frequency * 2.0 * math.pi / nu)
+    sizes = sorted(np.abs(orbit.multipliers), key=lambda size: abs(size - body))
+    return float(-1.0 / math.log(max(sizes[2:])))
 
 
 def _bands(bands: xr.Dataset, thresholds: Mapping[str, Any]) -> list[dict[str, Any]]:

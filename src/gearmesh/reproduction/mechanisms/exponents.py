@@ -16,7 +16,7 @@ TRANSIENT = 105
 
 
 def exponents(pair: Pair, resolution: int) -> xr.Dataset:
-    """Return the exponents of the motion from the paper's start.
+    """Return the exponents of the motion from the start of the study.
 
     Parameters
     ----------

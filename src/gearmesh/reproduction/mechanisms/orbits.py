@@ -5,10 +5,8 @@ from typing import Any
 
 import numpy as np
 
-from gearmesh.dynamics.continuation import branches as dimensionless
-from gearmesh.dynamics.continuation import special_points
 from gearmesh.errors import NoOrbit
-from gearmesh.interface.branches import Branch, SpecialPoint, follow
+from gearmesh.interface.branches import Branch, follow
 from gearmesh.interface.orbits import Orbit, find_orbit
 from gearmesh.study.pair import Pair
 
@@ -76,16 +74,8 @@ def doubled(single: Sequence[Branch], limits: Range) -> Iterator[Branch]:
         if point.kind != "flip" or any(abs(point.nu - nu) < _SAME for nu in passed):
             continue
         try:
-            branch = follow(_double_period(point), "nu", limits)
+            branch = follow(point.double_period(), "nu", limits)
         except NoOrbit:
             continue
         passed += [other.nu for other in branch.special if other.kind == "flip"]
         yield branch
-
-
-def _double_period(point: SpecialPoint) -> Orbit:
-    """Return an orbit of twice the period, close to a flip in ν_s."""
-    orbit = point.orbit
-    bare = special_points.SpecialPoint(point.kind, point.nu, point.parameters, orbit.reduced)
-    found = dimensionless.double_period(bare)
-    return Orbit(orbit.pair, orbit.variant, found.problem.nu, found)

@@ -10,11 +10,9 @@ from dataclasses import replace
 import numpy as np
 import xarray as xr
 
-from gearmesh.dynamics.starts import initial_states
 from gearmesh.interface.lengths import with_lengths
 from gearmesh.model.problem import Problem
 from gearmesh.model.variants import variant
-from gearmesh.solvers.reduced.ensembles import laws_of, measure
 from gearmesh.study.pair import Pair
 
 VARIANT = "c-lubricant"
@@ -59,6 +57,10 @@ def basins(pair: Pair, branches: xr.Dataset, resolution: int) -> xr.Dataset:
     resolution : int
         Starts along each axis.
     """
+    # numba is loaded at the first run: code that only reads results imports this module, too.
+    from gearmesh.dynamics.starts import initial_states
+    from gearmesh.solvers.reduced.ensembles import laws_of, measure
+
     heights, rates = np.linspace(*HEIGHTS, resolution), np.linspace(*RATES, resolution)
     problems = _problems(pair, BASINS_AT)
     states = np.concatenate([initial_states(problem, heights, rates) for problem in problems])
@@ -110,7 +112,7 @@ def resonant_orbit(branches: xr.Dataset, nu: float) -> tuple[float, float]:
 
 
 def phases(pair: Pair, resolution: int) -> xr.Dataset:
-    """Return what becomes of the paper's start at each starting phase, over ν_s.
+    """Return what becomes of the study's start at each starting phase, over ν_s.
 
     Parameters
     ----------
@@ -119,6 +121,8 @@ def phases(pair: Pair, resolution: int) -> xr.Dataset:
     resolution : int
         Starting phases, evenly spaced over the mesh period.
     """
+    from gearmesh.solvers.reduced.ensembles import laws_of, measure
+
     count = round((PHASES_TO - PHASES_FROM) / PHASES_STEP) + 1
     nus = np.round(np.linspace(PHASES_FROM, PHASES_TO, count), 10)
     starts = np.arange(resolution) / resolution

@@ -7,7 +7,6 @@ import xarray as xr
 
 from gearmesh.interface.lengths import with_lengths
 from gearmesh.model.variants import Variant, variant
-from gearmesh.solvers.reduced.ensembles import laws_of, measure
 from gearmesh.study.pair import Pair
 
 DWELL = 20
@@ -99,6 +98,9 @@ def _both_ways(pair: Pair, variants: Sequence[Variant], nus: np.ndarray) -> np.n
 
     Each run starts from the end of the run before it, or as a case does if that run failed.
     """
+    # numba is loaded at the first run: code that only reads results imports this module, too.
+    from gearmesh.solvers.reduced.ensembles import laws_of, measure
+
     cases = [pair.problem(chosen, float(nu)) for chosen in variants for nu in nus]
     upwards = laws_of(cases, pair.tolerance).reshape(len(variants), len(nus))
     laws = np.concatenate([upwards, upwards[:, ::-1]])

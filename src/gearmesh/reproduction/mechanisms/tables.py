@@ -1,12 +1,13 @@
 """Branches as one table over all their points, and special points as rows of a list."""
 
 from collections.abc import Iterable, Mapping, Sequence
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import xarray as xr
 
-from gearmesh.interface.branches import Branch, SpecialPoint
+if TYPE_CHECKING:  # code that only reads results imports this module, too, and needs no solver
+    from gearmesh.interface.branches import Branch, SpecialPoint
 
 STABILITY = {1: "stable", 0: "neutral", -1: "unstable"}
 """Values of the flag `stability`."""
@@ -15,7 +16,7 @@ Row = dict[str, Any]
 """A special point as `special_points.json` holds it."""
 
 
-def table(variant: str, branches: Sequence[Branch]) -> xr.Dataset:
+def table(variant: str, branches: Sequence["Branch"]) -> xr.Dataset:
     """Return the branches of a variant, one after the other, over ``point``.
 
     Returns
@@ -30,7 +31,7 @@ def table(variant: str, branches: Sequence[Branch]) -> xr.Dataset:
     )
 
 
-def _points(variant: str, number: int, branch: Branch) -> xr.Dataset:
+def _points(variant: str, number: int, branch: "Branch") -> xr.Dataset:
     found = branch.to_dataset()
     multipliers = found["multipliers"].values
     stability = np.where(found["neutral"], 0, np.where(found["stable"], 1, -1)).astype(np.int8)
@@ -61,7 +62,7 @@ def _points(variant: str, number: int, branch: Branch) -> xr.Dataset:
     return kept.drop_attrs(deep=False)
 
 
-def rows(variant: str, branches: Sequence[Branch], parameters: Mapping[str, Any]) -> list[Row]:
+def rows(variant: str, branches: Sequence["Branch"], parameters: Mapping[str, Any]) -> list[Row]:
     """Return the special points of a variant in their order along the branches.
 
     Parameters
@@ -82,7 +83,7 @@ def rows(variant: str, branches: Sequence[Branch], parameters: Mapping[str, Any]
     ]
 
 
-def _row(variant: str, number: int, point: SpecialPoint) -> Row:
+def _row(variant: str, number: int, point: "SpecialPoint") -> Row:
     found = point.orbit.reduced
     return {
         "variant": variant,

@@ -202,6 +202,8 @@ def shown(value: object) -> str:
         return "a mapping"
     if isinstance(value, list | tuple):
         return f"a list of {len(value)}" if value else "an empty list"
+    if type(value).__module__ not in ("builtins", "numpy"):
+        return f"an object of type {type(value).__name__}"
     try:
         text = repr(value)
     except ValueError:  # an integer with thousands of digits

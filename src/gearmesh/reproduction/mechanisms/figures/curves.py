@@ -52,7 +52,7 @@ def draw(curves: xr.Dataset, printed: Mapping[str, float]) -> Figure:
         axes.axhline(printed[parameter], color=palette.INK, lw=0.7, ls=(0, (1, 1)))
     row[0].set_xlim(0.5, 1.2)
     known = {label: line for axes in row for line, label in zip(*_entries(axes), strict=True)}
-    dotted = Line2D([], [], color=palette.INK, lw=0.7, ls=(0, (1, 1)), label="the paper's value")
+    dotted = Line2D([], [], color=palette.INK, lw=0.7, ls=(0, (1, 1)), label="value of this study")
     figure.legend(handles=[*known.values(), dotted], loc="outside lower center", ncols=4)
     return figure
 

@@ -17,6 +17,9 @@ LABELS = ("no contact loss", "contact loss", "back-flank contact")
 EDGES = ("grazing_front", "fold", "flip")
 """Special points at which the state of the mesh changes."""
 
+PAPER = (0, (1, 1))
+"""Dots, because grazings are dashed."""
+
 TITLES = {"material": "□  material", "both": "×  both", "lubricant": "•  lubricant"}
 
 
@@ -29,7 +32,7 @@ def draw(design_map: xr.Dataset, special_curves: xr.Dataset, damping_ratio: floa
     design_map : xarray.Dataset
         ``state`` and ``several`` over (place, damping_ratio, nu).
     special_curves : xarray.Dataset
-        Curves of special points, which are the exact edges of the regions.
+        Curves of special points; those of c-□ and c-• are drawn.
     damping_ratio : float
         D of the paper, drawn as a line.
     """
@@ -56,7 +59,7 @@ def draw(design_map: xr.Dataset, special_curves: xr.Dataset, damping_ratio: floa
             hatches=("////",),
         )
         _draw_exact(axes, special_curves, f"c-{place}")
-        axes.axhline(damping_ratio, color=palette.INK, lw=0.8, ls=(0, (4, 2)))
+        axes.axhline(damping_ratio, color=palette.BLUE, lw=1.1, ls=PAPER)
         axes.set_yscale("log")
         axes.set_ylim(ratio[0], ratio[-1])
         axes.set_xlim(nu[0], nu[-1])
@@ -65,7 +68,7 @@ def draw(design_map: xr.Dataset, special_curves: xr.Dataset, damping_ratio: floa
     row[0].set_ylabel("damping ratio $D$")
     row[0].annotate(
         "paper", (nu[-1], damping_ratio), xytext=(-3, 3), textcoords="offset points", ha="right",
-        fontsize=8,
+        fontsize=8, color=palette.BLUE,
     )  # fmt: skip
     edge = {"edgecolor": palette.GREY, "lw": 0.5}
     handles = [
@@ -77,7 +80,8 @@ def draw(design_map: xr.Dataset, special_curves: xr.Dataset, damping_ratio: floa
         Line2D([], [], color=palette.INK, ls=DASHES[kind], label=f"{NAMES[kind]} of an orbit")
         for kind in EDGES
     ]
-    figure.legend(handles=[*handles, *lines], loc="outside lower center", ncols=3)
+    lines.append(Line2D([], [], color=palette.BLUE, lw=1.1, ls=PAPER, label="$D$ of the paper"))
+    figure.legend(handles=[*handles, *lines], loc="outside lower center", ncols=4)
     return figure
 
 

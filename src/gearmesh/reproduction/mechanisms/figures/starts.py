@@ -46,7 +46,7 @@ def draw(basins: xr.Dataset, phases: xr.Dataset, special: list[Row]) -> Figure:
         axes.set_xlabel("initial $y$ in $y_{st}$")
     row[0].set_ylabel(f"initial {V} in $y_{{st}}$")
     patches = [Patch(facecolor=COLOURS[kind], label=label) for kind, label in LABELS.items()]
-    start = Line2D([], [], ls="none", label="the paper's start", **_START)
+    start = Line2D([], [], ls="none", label="the study's start", **_START)
     upper.legend(handles=[*patches, start], loc="outside lower center", ncols=4)
     _draw_share(lower.subplots(), phases, special)
     lower.legend(loc="outside lower center", ncols=5)
@@ -95,4 +95,4 @@ def _draw_share(axes: Axes, phases: xr.Dataset, special: list[Row]) -> None:
     axes.set_ylim(-3, 103)
     axes.set_xlabel("mesh frequency $\\nu_s$")
     axes.set_ylabel("starting phases with contact loss, %")
-    axes.set_title("c •  what the paper's start becomes at all starting phases")
+    axes.set_title("c •  what the study's start becomes at all starting phases")
