@@ -301,6 +301,7 @@ def test_compare_lists_what_differs(gearmesh, two_runs, tmp_path):
         ((*SIMULATE, "-o", "x.nc", "--kept", "9"), "kept_revolutions"),
         ((*SIMULATE, "-o", "x.nc", *LONG), "makes 53760000 samples"),
         ((*SWEEP, "--nu", "0.7", *LONG), "allowed are at most 10000000, here 1860 revolutions"),
+        ((*SWEEP, "--nu", "0.6:1.2:0.0001", "--loads"), "6001 runs, which keep 32261376 samples"),
         ((*SIMULATE, "-o", "x.nc", "--revolutions", "two"), "--revolutions: found 'two'"),
         ((*SIMULATE, "-o", "x.nc", "--start", "1 kg", "0"), "1 kg"),
         (
