@@ -115,9 +115,7 @@ def _label_loads(orders: Axes, forces: Axes) -> None:
 
 
 def save(figure: Figure, path: Path) -> None:
-    """Write a figure in the format that its name ends in."""
-    if path.suffix not in FORMATS:
-        raise InputError(f"--output: found {path.name}; allowed are {', '.join(FORMATS)}")
+    """Write a figure in the format that its name ends in, one of `FORMATS`."""
     with replacing(path) as temporary, style.context(["default", STYLE]):
         figure.savefig(temporary, format=path.suffix[1:])
 
@@ -140,6 +138,8 @@ def read_run(path: Path) -> xr.Dataset:
         raise InputError(f"{path}: cannot be read: not a NetCDF file") from None
     if "parameters" not in run.attrs or "strobe_y_rel" not in run:
         raise InputError(f"{path}: not a run of gearmesh; 'gearmesh simulate' writes one")
+    if not run["strobe_y_rel"].ndim:
+        raise InputError(f"{path}: an orbit, which is no run; 'gearmesh simulate' writes one")
     if "y_rel" not in run or not run["y_rel"].size:
         raise InputError(f"{path}: a run without its time course; 'gearmesh simulate' writes one")
     return run.set_coords("time")

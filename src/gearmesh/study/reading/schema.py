@@ -66,7 +66,16 @@ class Section(BaseModel):
         declared = field.json_schema_extra
         if not isinstance(declared, dict) or (value is None and not field.is_required()):
             return value
-        return read_declared(value, declared)
+        if declared["structured"]:
+            return value  # a list of sections, or a word
+        kinds = (field.annotation, *get_args(field.annotation))
+        if isinstance(value, list | tuple) and not any(get_origin(kind) is tuple for kind in kinds):
+            raise ValueError("allowed is a single value")
+        found = read_declared(value, declared)
+        if int in kinds and any(number % 1.0 for number in of_wheels(found)):
+            several = isinstance(found, tuple)
+            raise ValueError(f"allowed {'are whole numbers' if several else 'is a whole number'}")
+        return found
 
     def __str__(self) -> str:
         stated = self.model_dump(exclude_none=True)
