@@ -3,6 +3,7 @@
 from dataclasses import dataclass
 from typing import Any
 
+from gearmesh.report.presentation import unit_text
 from gearmesh.study.pair import Pair
 from gearmesh.study.reading.schema import of_wheels
 
@@ -88,7 +89,7 @@ def shown(pair: Pair) -> list[Shown]:
     found = []
     for control in CONTROLS:
         stated, factor = declared[control.name], 1.0
-        unit = "" if stated["unit"] == "1" else stated["unit"].replace("*", " ")
+        unit = "" if stated["unit"] == "1" else unit_text(stated["unit"])
         if control.scale:
             factor, unit = float(getattr(pair, control.scale)), _SYMBOLS[control.scale]
         value = of_wheels(getattr(pair, control.name))[0]
