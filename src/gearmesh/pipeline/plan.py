@@ -262,7 +262,7 @@ _FACTS: dict[str, Callable[..., object]] = {
     "datasets": lambda plan: (plan.study.title, plan.pair, _grid(plan.study)),
     "thresholds": lambda plan: (plan.pair, plan.study.variants),
     "branches": lambda plan: (
-        *(plan.study.title, plan.pair, plan.mechanisms.variants),
+        *(plan.study.title, plan.pair, plan.mechanisms.variants, _grid(plan.study)),
         plan.study.plan.nu.all,
     ),
     **{

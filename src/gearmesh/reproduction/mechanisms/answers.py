@@ -11,6 +11,7 @@ import xarray as xr
 from gearmesh.errors import NoOrbit
 from gearmesh.reproduction.mechanisms.bands import NEAR_FIRST_JUMP, band
 from gearmesh.reproduction.mechanisms.bands import VARIANTS as BANDED
+from gearmesh.reproduction.mechanisms.long_runs import shares
 from gearmesh.reproduction.mechanisms.starts import JUMPED, VARIANT
 from gearmesh.reproduction.mechanisms.sweeps import DIRECTIONS, SEPARATE
 from gearmesh.reproduction.mechanisms.tables import Row
@@ -100,6 +101,8 @@ def answers(
         "chaos": _chaos(datasets["lyapunov"]),
         "contact_up_to": _contact_up_to(datasets["special_curves"]),
         "map": _map(datasets["design_map"]),
+        "ends": shares(datasets["attractors"], pair.revolutions * pair.teeth_3),
+        "ended": datasets["attractors"].attrs,
     }
 
 
