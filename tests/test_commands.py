@@ -216,6 +216,7 @@ def test_orbit_prints_its_multipliers_and_writes_it(gearmesh, tmp_path):
     with xr.open_dataset(file) as orbit:
         moduli = np.hypot(orbit.multipliers_real, orbit.multipliers_imag)
     assert f"{float(moduli.max()):.10f}" in run.stdout
+    assert "an orbit, which is no run" in refused(gearmesh("plot", file))
 
 
 def test_branch_lists_its_special_points(gearmesh, tmp_path):
@@ -253,13 +254,29 @@ def test_plot_draws_a_run(gearmesh, two_runs, tmp_path, suffix, start):
     assert picture.read_bytes().startswith(start)
 
 
+@pytest.mark.parametrize("command", ["plot", "compare"])
+@pytest.mark.parametrize(
+    ("output", "expected"),
+    [
+        ("y.txt", "found y.txt; allowed is a name that ends in .png, .svg, .pdf"),
+        ("", "is a folder; allowed is the name of a file"),
+        ("missing/y.png", "there is no folder missing"),
+    ],
+)
+def test_a_wrong_picture_is_refused_before_anything(gearmesh, two_runs, command, output, expected):
+    runs = [two_runs / "a.nc", two_runs / "b.nc"][: 1 + (command == "compare")]
+    assert expected in refused(gearmesh(command, *runs, "-o", output, cwd=two_runs))
+
+
 def test_compare_lists_what_differs(gearmesh, two_runs, tmp_path):
     run = gearmesh("compare", two_runs / "a.nc", two_runs / "b.nc", cwd=tmp_path)
     assert run.returncode == 0, run.stderr
     assert "nu_s: A 0.78, B 0.8" in run.stdout
     rows = {line.split()[0]: line.split() for line in run.stdout.splitlines() if line}
     with xr.open_dataset(two_runs / "b.nc") as second:
-        assert float(rows["y_max"][4]) == pytest.approx(float(second["y_max"]), rel=1e-9)
+        assert float(rows["y_max"][4]) == pytest.approx(
+            float(second["y_max"]), rel=5e-6
+        )  # six digits
     assert (tmp_path / "a-b.png").exists()
 
 
@@ -286,6 +303,7 @@ def test_compare_lists_what_differs(gearmesh, two_runs, tmp_path):
         ((*SIMULATE, "-o", "x.nc", "--kept", "9"), "kept_revolutions"),
         ((*SIMULATE, "-o", "x.nc", *LONG), "makes 53760000 samples"),
         ((*SWEEP, "--nu", "0.7", *LONG), "allowed are at most 10000000, here 1860 revolutions"),
+        ((*SWEEP, "--nu", "0.6:1.2:0.0001", "--loads"), "6001 runs, which keep 32261376 samples"),
         ((*SIMULATE, "-o", "x.nc", "--revolutions", "two"), "--revolutions: found 'two'"),
         ((*SIMULATE, "-o", "x.nc", "--start", "1 kg", "0"), "1 kg"),
         (
@@ -305,6 +323,11 @@ def test_compare_lists_what_differs(gearmesh, two_runs, tmp_path):
         (("orbit", *SIMULATE[1:], "--periods", "1", "--periods", "1"), "--periods: found twice"),
         (("parameters", "--config", "a.yaml", "--config", "b.yaml"), "--config: found twice"),
         (("parameters", "--set", "teeth=20", "--set", "teeth=30"), "teeth: found twice"),
+        ((*SIMULATE, "-o", f"{'x' * 300}.nc"), "cannot be written (File name too long)"),
+        ((*SIMULATE, "-o", "x\0.nc"), "cannot be written (embedded null byte)"),
+        ((*SIMULATE, "-o", "x.nc", "--kept", "9" * 5000), "--kept: found '999"),
+        (("orbit", *SIMULATE[1:], "--periods", "9" * 5000), "--periods: found '999"),
+        (("parameters", "--config", "a\0b"), "cannot be read (embedded null byte)"),
         (("plot", "none.nc"), "none.nc: cannot be read: No such file"),
         (("plot", "config/paper.yaml"), "not a NetCDF file"),
         (("parameters", "--config", "."), "cannot be read"),

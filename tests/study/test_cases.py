@@ -122,7 +122,7 @@ variants: [c-lubicant] | variants.0: found 'c-lubicant'; unknown variant (did yo
 variants: [i-both] | variants.0: found 'i-both'; unknown variant
 variants: c-material | variants: found 'c-material'; allowed is a list of variants, or all
 variants: 3 | variants: found 3; allowed is a list
-variants: [] | variants: found none; allowed are names of Tab. 1, or all
+variants: [] | variants: found none; allowed are names of Tab. 1
 variants: [c-material, c-material] | variants: found c-material twice; allowed is once
 variants: [3] | variants.0: found 3; unknown variant
 direction: sideways | direction: found 'sideways'; allowed is 'up' or 'down'
@@ -141,6 +141,10 @@ case_files: perhaps | case_files: found 'perhaps'; allowed is true or false
 title: 5 | title: found 5; allowed is a text
 title: '' | title: found ''; allowed is a text that is not empty
 titel: x | titel: unknown key (did you mean 'title'?)
+mechanisms: {variants: []} | mechanisms.variants: found none; allowed are names of Tab. 1
+mechanisms: {variants: [c-both, c-both]} | mechanisms.variants: found c-both twice
+mechanisms: {variants: [c-both], resolution: 0} | found 0; out of range; allowed is 2 to 1000
+mechanisms: {variants: [c-both], resolution: x} | found 'x'; not a quantity
 claims: [a] | claims: found a list of 1; allowed is a text
 run: {revolutions: 5} | run: unknown key
 solver: {tolerance: 1e-8} | solver: unknown key
@@ -156,6 +160,10 @@ def test_a_wrong_plan_is_reported_in_one_line(refused, mistake):
 @pytest.mark.parametrize(
     ("stated", "expected"),
     [
+        (
+            "variants: [b-both]\nmechanisms: {variants: [c-both]}",
+            "mechanisms.variants: found c-both, which is not computed; allowed are b-both",
+        ),
         (
             "variants: [b-both]\ntime_courses: {c-material: [0.6]}",
             "time_courses.c-material: this variant is not computed",

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 from gearmesh.errors import InputError
 from gearmesh.study.cases import Plan, Study
-from gearmesh.study.loading import load_study
+from gearmesh.study.loading import load, load_study
 from gearmesh.study.pair import Pair
 
 fuzz = settings(
@@ -64,7 +64,10 @@ mesh_stiffness_max=4·10^5 N/mm | not a quantity
 reduced_mass=3.123 mm | found '3.123 mm'; unit 'mm' is of another kind; expected: a mass
 reduced_mass=-3 kg | found '-3 kg'; out of range; allowed is 1e-06 to 1e+06 kg
 reduced_mass=3.123 kgs | unknown unit 'kgs'
-teeth=21.5 | found 21.5; allowed is a whole number
+teeth=21.5 | teeth: found 21.5; allowed is a whole number
+teeth=[21, 22.5] | teeth: found a list of 2; allowed are whole numbers
+revolutions='2.5' | revolutions: found '2.5'; allowed is a whole number
+revolutions=[2] | revolutions: found a list of 1; allowed is a single value
 teeth=twenty-one | not a quantity
 teeth=true | found True; not a quantity
 teeth=yes | found 'yes'; not a quantity
@@ -79,6 +82,7 @@ pressure_angle=20 mm | of another kind
 backlash=40um. | not a quantity
 backlash=0,04 mm | found '0,04 mm'; not a quantity; use a decimal point; expected: a length
 backlash=0 um | out of range
+backlash=[1 um, 2 um] | backlash: found a list of 2; allowed is a single value
 backlash=8 C_s | found '8 C_s'; unit 'N/mm' is of another kind; expected: a length
 backlash=8 st | unknown unit 'st'
 backlash={value: 40 um} | found a mapping; not a quantity
@@ -151,7 +155,7 @@ BAD_FILES = {
     "tab": (b"nu:\n\tstep: 3\n", "line 2, column 1"),
     "indent": (b"nu:\n  a: 1\n b: 2\n", "line 3"),
     "open quote": (b'title: "abc\n', "line 2"),
-    "two documents": (b"a: 1\n---\nb: 2\n", "line 2"),
+    "two documents": (b"a: 1\n---\nb: 2\n", "line 2, column 1: found a second document; all"),
     "number as key": (b"1: 2\n", "line 1, column 1: a key is not a text"),
     "list as key": (b"[a, b]: 2\n", "line 1, column 1: a key is not a text"),
     "merge key": (b"a: &x {b: 1}\nc:\n  <<: *x\n", "aliases (*) are not supported"),
@@ -161,6 +165,7 @@ BAD_FILES = {
     "deep": (b"a: " + b"[" * 5000, "more than 12 levels"),
     "huge": (b"#" * 1_000_001, "larger than"),
     "no base": (b"base: missing.yaml", "missing.yaml: cannot be read (No such file"),
+    "base with nul": (b'base: "a\\0b"', "cannot be read (embedded null byte)"),
     "base a list": (b"base: [paper.yaml]", "base: found a list of 1; allowed is the name of a fi"),
     "itself": (b"base: study.yaml", "inherit in a circle"),
     "nothing stated": (b"title: x", "contact_ratio: missing; expected: contact ratio"),
@@ -192,6 +197,19 @@ def test_a_file_that_cannot_be_opened_is_named(tmp_path):
         load_study(tmp_path / "missing.yaml")
     with pytest.raises(InputError, match="cannot be read \\(Is a directory"):
         load_study(tmp_path)
+
+
+@pytest.mark.parametrize("path", [None, 5, b"paper.yaml", [], "", "a\0b"])
+def test_what_is_no_name_of_a_file_is_reported_in_one_line(path):
+    with pytest.raises(InputError, match=r"allowed is the name of a file|cannot be read"):
+        load(path)
+
+
+@pytest.mark.parametrize("claims", ["nope.yaml", ".", '"a\\0b"'])
+def test_a_ledger_that_is_not_there_is_reported(write, claims):
+    file = write(f"base: paper.yaml\nclaims: {claims}")
+    with pytest.raises(InputError, match=r"study.yaml: claims: there is no file "):
+        load(file)
 
 
 def test_several_mistakes_are_counted(paper):

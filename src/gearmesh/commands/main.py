@@ -14,6 +14,7 @@ from gearmesh.garbage import search_rarely
 BAD_INPUT = 2
 INTERRUPTED = 130
 OUT_OF_MEMORY = 1
+_MOST_DIGITS = 18
 
 
 class _Once(argparse.Action):
@@ -31,6 +32,12 @@ class _Once(argparse.Action):
             raise InputError(f"{option_string}: found twice; allowed is once")
         given.add(self.dest)
         setattr(namespace, self.dest, values)
+
+
+def _whole(text: str) -> int:
+    if not text.isdecimal() or len(text) > _MOST_DIGITS:
+        raise argparse.ArgumentTypeError(f"found '{text:.60}'; allowed is a whole number")
+    return int(text)
 
 
 class _Parser(argparse.ArgumentParser):
@@ -129,8 +136,8 @@ def _pair_options() -> _Parser:
 
 def _add_runs(commands: "argparse._SubParsersAction[_Parser]", pair: _Parser) -> None:
     run = _Parser(add_help=False, parents=[_start_option()])
-    run.add_argument("--revolutions", metavar="N", help="revolutions that are run")
-    run.add_argument("--kept", metavar="N", help="last revolutions that are kept")
+    run.add_argument("--revolutions", metavar="N", type=_whole, help="revolutions that are run")
+    run.add_argument("--kept", metavar="N", type=_whole, help="last revolutions that are kept")
     run.add_argument(
         "-o", "--output", required=True, metavar="FILE.nc", type=Path, help="file to write"
     )
@@ -184,7 +191,11 @@ def _add_orbits(commands: "argparse._SubParsersAction[_Parser]", pair: _Parser) 
     near.add_argument("--variant", required=True, help="see 'gearmesh variants'")
     near.add_argument("--nu", required=True, help="mesh frequency nu_s, or '3000 rpm'")
     near.add_argument(
-        "--periods", metavar="N", default="1", help="least period in mesh periods (default: 1)"
+        "--periods",
+        metavar="N",
+        type=_whole,
+        default=1,
+        help="least period in mesh periods (default: 1)",
     )
     near.add_argument("-o", "--output", metavar="FILE.nc", type=Path, help="file to write")
 

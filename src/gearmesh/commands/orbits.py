@@ -6,10 +6,11 @@ from pathlib import Path
 import numpy as np
 import xarray as xr
 
-from gearmesh.commands.runs import check_output, read_frequency, read_start
+from gearmesh.commands.output import check_output
+from gearmesh.commands.runs import read_frequency, read_start
 from gearmesh.commands.tables import load_pair, print_table
 from gearmesh.data.writing import replacing
-from gearmesh.errors import InputError, NoOrbit
+from gearmesh.errors import NoOrbit
 from gearmesh.interface.branches import follow
 from gearmesh.interface.orbits import Orbit, find_orbit
 from gearmesh.model.variants import variant
@@ -65,14 +66,12 @@ def branch(options: argparse.Namespace) -> int:
 
 
 def _find(options: argparse.Namespace) -> Orbit:
-    if not options.periods.isdecimal():
-        raise InputError(f"--periods: found '{options.periods}'; allowed is a whole number")
     pair = load_pair(options)
     return find_orbit(
         pair,
         variant(options.variant),
         read_frequency(options.nu, pair),
-        periods=int(options.periods),
+        periods=options.periods,
         start=read_start(options.start),
     )
 

@@ -1,11 +1,11 @@
 """``gearmesh plot`` and ``gearmesh compare``."""
 
 import argparse
-import json
 from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
+from gearmesh.commands.output import check_output
 from gearmesh.commands.tables import print_table
 from gearmesh.errors import InputError
 
@@ -15,11 +15,12 @@ def plot(options: argparse.Namespace) -> int:
     figures = _figures()
     run = figures.read_run(options.case)
     output = options.output or options.case.with_suffix(".png")
+    replaces = check_output(output, figures.FORMATS)
     figures.save(figures.draw([run]), output)
     shown = "phase plane, stroboscopic points and time course"
     if figures.is_ramp(run):
         shown = "response over the speed"
-    print(f"{output}: {shown} of {_label(run)}")
+    print(f"{output}{replaces}: {shown} of {_label(run)}")
     return 0
 
 
@@ -27,12 +28,13 @@ def compare(options: argparse.Namespace) -> int:
     """Draw two runs on each other and list what differs."""
     figures = _figures()
     runs = [figures.read_run(path) for path in (options.first, options.second)]
+    output = options.output or Path(f"{options.first.stem}-{options.second.stem}.png")
+    replaces = check_output(output, figures.FORMATS)
     for row in _parameter_rows(*runs):
         print(row)
     print_table(figures.differences(*runs))
-    output = options.output or Path(f"{options.first.stem}-{options.second.stem}.png")
     figures.save(figures.draw(runs), output)
-    print(f"{output}: both runs")
+    print(f"{output}{replaces}: both runs")
     return 0
 
 
@@ -51,12 +53,9 @@ def _label(run: Any) -> str:
 
 def _parameter_rows(first: Any, second: Any) -> list[str]:
     """List the variant, frequency and parameters in which two runs differ."""
-    stated = [
-        {"variant": run.attrs["variant"], "nu_s": run.attrs["nu_s"]}
-        | json.loads(run.attrs["parameters"])
-        for run in (first, second)
-    ]
-    names = [name for name in stated[0] if stated[0][name] != stated[1].get(name)]
-    if not names:
+    from gearmesh.report.run_names import differing
+
+    found = differing(first, second)
+    if not found:
         return ["A and B state the same run"]
-    return [f"{name}: A {stated[0][name]}, B {stated[1].get(name)}" for name in names]
+    return [f"{name}: A {one}, B {other}" for name, (one, other) in found.items()]

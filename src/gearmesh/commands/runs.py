@@ -1,10 +1,9 @@
 """``gearmesh simulate`` and ``gearmesh sweep``."""
 
 import argparse
-import os
 from collections.abc import Sequence
-from pathlib import Path
 
+from gearmesh.commands.output import check_output
 from gearmesh.commands.tables import load_pair
 from gearmesh.data.writing import replacing
 from gearmesh.errors import InputError
@@ -15,7 +14,6 @@ from gearmesh.study.reading.schema import validate
 from gearmesh.study.speeds import as_nu, read_nu_or_speed
 
 NOT_INTEGRATED = 1
-_NETCDF = (b"CDF", b"\x89HDF")
 
 
 def simulate(options: argparse.Namespace) -> int:
@@ -53,8 +51,8 @@ def simulate(options: argparse.Namespace) -> int:
     if response.sensitive:
         error = max(response.y_max_error, response.y_min_error) * y_st
         print(
-            f"sensitive: this motion amplifies small errors; y_max and y_min may be off by "
-            f"{error:.1g} mm"
+            f"sensitive: this motion amplifies small errors; the estimated error of y_max "
+            f"and y_min is {error:.1g} mm"
         )
     return 0
 
@@ -90,8 +88,8 @@ def _pair(options: argparse.Namespace) -> Pair:
     return with_settings(
         load_pair(options),
         read_start(options.start),
-        revolutions=_whole("--revolutions", options.revolutions),
-        kept_revolutions=_whole("--kept", options.kept),
+        revolutions=options.revolutions,
+        kept_revolutions=options.kept,
     )
 
 
@@ -101,14 +99,6 @@ def read_start(texts: Sequence[str] | None) -> tuple[object, object] | None:
         return None
     displacement, velocity = (_number_or_text(text) for text in texts)
     return displacement, velocity
-
-
-def _whole(option: str, text: str | None) -> int | None:
-    if text is None:
-        return None
-    if not text.isdecimal():
-        raise InputError(f"{option}: found '{text}'; allowed is a whole number")
-    return int(text)
 
 
 def _number_or_text(text: str) -> float | str:
@@ -135,31 +125,3 @@ def _frequencies(text: str, pair: Pair) -> list[float]:
         raise InputError(f"--nu: found '{text}'; allowed is START:STOP:STEP, or one number")
     stated = as_nu(dict(zip(("start", "stop", "step"), parts, strict=True)), pair, "--nu")
     return list(validate(Frequencies, stated, "--nu", {}).all)
-
-
-def check_output(path: Path) -> str:
-    """Refuse an output that could not be written after the run, or that would destroy other files.
-
-    Returns
-    -------
-    str
-        Remark about an earlier run that is replaced; empty if there is none.
-    """
-    folder = path.parent
-    if path.is_dir():
-        raise InputError(f"--output: {path} is a folder; allowed is the name of a file")
-    if path.suffix != ".nc":
-        raise InputError(
-            f"--output: found {path.name}; the file is NetCDF, so its name ends in .nc"
-        )
-    if not folder.is_dir():
-        raise InputError(f"--output: {path}: there is no folder {folder}")
-    if not os.access(folder, os.W_OK):
-        raise InputError(f"--output: {path}: the folder {folder} is not writable")
-    if not path.exists():
-        return ""
-    with path.open("rb") as file:
-        start = file.read(4)
-    if start and not start.startswith(_NETCDF):
-        raise InputError(f"--output: {path} exists and is no NetCDF file; choose another name")
-    return " (replaced)"

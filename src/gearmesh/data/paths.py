@@ -8,6 +8,7 @@ PAPER = CONFIG / "paper.yaml"
 SMOKE = CONFIG / "smoke.yaml"
 CLAIMS = CONFIG / "claims.yaml"
 NOTEBOOKS = Path("notebooks")
+GLOSSARY = Path("docs/glossary.md")
 CAPTIONS = Path("workflow/report")
 RESULTS = Path("results")
 

@@ -16,6 +16,7 @@ from gearmesh.interface.statements import (
     Start,
     check_direction,
     check_pair,
+    check_samples,
     read_frequencies,
     read_frequency,
     read_variant,
@@ -172,6 +173,8 @@ def sweep(
     for one in (pair, *pairs):
         check_constant_speed(one, "each run of a sweep")
     _check_speeds(nu, [pair, *pairs])
+    if loads:
+        check_samples(pairs, len(chosen) * len(nus))
     order = sorted(nus, reverse=direction == "down")
     places = list(itertools.product(chosen, pairs))
     chains = [[one.problem(variant, x) for x in order] for variant, one in places]

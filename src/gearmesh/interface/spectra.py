@@ -15,6 +15,7 @@ from gearmesh.errors import InputError
 from gearmesh.interface.statements import (
     check_direction,
     check_pair,
+    check_samples,
     read_frequencies,
     read_variant,
     with_settings,
@@ -133,6 +134,7 @@ def campbell(
     check_constant_speed(pair, "a map over speeds")
     chosen, nus = read_variant(variant), sorted(read_frequencies(nu, pair))
     pair = with_settings(pair, revolutions=revolutions, kept_revolutions=kept)
+    check_samples([pair], len(nus))
     if direction == "down":
         nus.reverse()
     problems = [pair.problem(chosen, one) for one in nus]

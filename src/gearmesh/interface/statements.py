@@ -14,6 +14,7 @@ from gearmesh.errors import InputError
 from gearmesh.model.variants import Variant, variant
 from gearmesh.study.loading import load_study
 from gearmesh.study.pair import Pair
+from gearmesh.study.parameters import MOST_SWEPT_SAMPLES
 from gearmesh.study.reading import units
 from gearmesh.study.reading.schema import shown
 from gearmesh.study.speeds import read_nu_or_speed
@@ -111,7 +112,7 @@ def bare(value: Any) -> Any:
 def read_whole(name: str, value: Any, low: int, high: int) -> int:
     """Return a whole number; raises InputError if it is none from `low` to `high`."""
     try:
-        number = None if isinstance(value, bool) else operator.index(value)
+        number = None if isinstance(value, bool) else operator.index(bare(value))
     except TypeError:
         number = None
     if number is None or not low <= number <= high:
@@ -119,6 +120,16 @@ def read_whole(name: str, value: Any, low: int, high: int) -> int:
             f"{name}: found {shown(value)}; allowed is a whole number from {low} to {high}"
         )
     return number
+
+
+def check_samples(pairs: Sequence[Pair], runs: int) -> None:
+    """Raise InputError if `runs` runs of each pair keep more samples than memory should hold."""
+    samples = runs * sum(pair.kept_samples for pair in pairs)
+    if samples > MOST_SWEPT_SAMPLES:
+        raise InputError(
+            f"nu: found {runs * len(pairs)} runs, which keep {samples} samples; allowed are at "
+            f"most {MOST_SWEPT_SAMPLES}; take fewer runs, revolutions or samples_per_period"
+        )
 
 
 def with_settings(

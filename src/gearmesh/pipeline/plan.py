@@ -242,7 +242,7 @@ _COMMITTED: dict[str, Callable[[], list[Path]]] = {
     "report": lambda: [
         *_templates(),
         *(paths.CAPTIONS / f"{name}.rst" for name in (*paths.FIGURE_NAMES, *paths.WHY_FIGURES)),
-        *(layout.IDENTIFIED, layout.SETTINGS, paths.CLAIMS),
+        *(layout.IDENTIFIED, layout.SETTINGS, paths.CLAIMS, paths.GLOSSARY),
     ],
     "box": lambda: [paths.CLAIMS],
     "identified": lambda: [layout.SETTINGS, paths.CLAIMS],

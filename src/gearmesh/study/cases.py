@@ -1,6 +1,6 @@
 """A study: a pair, its variants and mesh frequencies, and the cases that follow from them."""
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
@@ -21,6 +21,14 @@ def _read_variant(value: object) -> str:
         hint = nearest(str(value), VARIANTS) or f"; allowed are {', '.join(VARIANTS)}"
         raise ValueError(f"unknown variant{hint}")
     return value
+
+
+def _check_each_once(variants: Sequence[str]) -> None:
+    if not variants:
+        raise ValueError("variants: found none; allowed are names of Tab. 1")
+    for name in variants:
+        if variants.count(name) > 1:
+            raise ValueError(f"variants: found {name} twice; allowed is once")
 
 
 VariantName = Annotated[str, BeforeValidator(_read_variant)]
@@ -51,9 +59,14 @@ class Mechanisms(Section):
     """The orbits and attractors that are computed behind the response curves."""
 
     variants: tuple[VariantName, ...] = Field(description="the variants whose orbits are followed")
-    resolution: int = Field(
-        64, description="points along each axis of basins and maps", ge=2, le=1000
+    resolution: int = quantity(
+        "1", "n", "points along each axis of basins and maps", 2, 1000, default=64
     )
+
+    @model_validator(mode="after")
+    def _names_each_variant_once(self) -> Self:
+        _check_each_once(self.variants)
+        return self
 
 
 class Plan(Section):
@@ -94,11 +107,14 @@ class Plan(Section):
 
     @model_validator(mode="after")
     def _is_consistent(self) -> Self:
-        if not self.variants:
-            raise ValueError("variants: found none; allowed are names of Tab. 1, or all")
-        for name in self.variants:
-            if self.variants.count(name) > 1:
-                raise ValueError(f"variants: found {name} twice; allowed is once")
+        _check_each_once(self.variants)
+        if self.mechanisms is not None:
+            for name in self.mechanisms.variants:
+                if name not in self.variants:
+                    raise ValueError(
+                        f"mechanisms.variants: found {name}, which is not computed; allowed are "
+                        f"{', '.join(self.variants)}"
+                    )
         count = sum(len(nus) for _, nus in self.frequencies())
         if count > MAX_CASES:
             raise ValueError(f"nu: makes {count} cases; allowed are at most {MAX_CASES}")

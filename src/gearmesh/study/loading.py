@@ -4,6 +4,7 @@
 becomes one line. Nothing in a configuration is evaluated.
 """
 
+import os
 import re
 from collections.abc import Iterable, Mapping
 from pathlib import Path
@@ -143,9 +144,9 @@ def _with_bases(
     path: Path, inheriting: tuple[Path, ...]
 ) -> tuple[dict[str, object], dict[str, object]]:
     """Read a file; return its content merged into that of its bases, and its own content."""
+    own = yamlfile.read_mapping(path)
     if path.resolve() in inheriting or len(inheriting) >= _MAX_BASES:
         raise InputError(f"{path}: base: the files inherit in a circle, or more than {_MAX_BASES}")
-    own = yamlfile.read_mapping(path)
     base = own.pop("base", None)
     if base is None:
         return dict(own), own
@@ -218,4 +219,9 @@ def load(path: str | Path) -> Study:
     InputError
         With one line: file, key, what was found, what is allowed.
     """
-    return load_study(path)
+    if not isinstance(path, str | os.PathLike):
+        raise InputError(f"path: found {shown(path)}; allowed is the name of a file")
+    study = load_study(path)
+    if study.claims is not None and not os.path.isfile(study.claims):
+        raise InputError(f"{path}: claims: there is no file {study.claims}")
+    return study

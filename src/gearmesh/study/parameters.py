@@ -33,6 +33,9 @@ MOST_HARMONICS = 100
 MOST_SAMPLES = 10_000_000
 """Samples that a run may keep. A time course needs about 440 bytes of memory for each: 4.4 GB."""
 
+MOST_SWEPT_SAMPLES = 3 * MOST_SAMPLES
+"""Samples that the runs of a sweep may keep together, which needs 210 bytes for each: 6.4 GB."""
+
 
 class Parameters(Section):
     """The declared parameters, in the order in which they are listed.
@@ -289,12 +292,16 @@ class Parameters(Section):
                 f"kept_revolutions: found {self.kept_revolutions}; allowed are at most the "
                 f"{self.revolutions} that are run"
             )
-        of_revolution = of_wheels(self.teeth)[0] * self.samples_per_period
-        samples = self.kept_revolutions * of_revolution
-        if samples > MOST_SAMPLES:
+        if self.kept_samples > MOST_SAMPLES:
+            most = MOST_SAMPLES * self.kept_revolutions // self.kept_samples
             raise ValueError(
-                f"kept_revolutions: found {self.kept_revolutions}, which makes {samples} samples "
-                f"(teeth × samples_per_period × kept_revolutions); allowed are at most "
-                f"{MOST_SAMPLES}, here {MOST_SAMPLES // of_revolution} revolutions"
+                f"kept_revolutions: found {self.kept_revolutions}, which makes {self.kept_samples} "
+                "samples (teeth × samples_per_period × kept_revolutions); allowed are at most "
+                f"{MOST_SAMPLES}, here {most} revolutions"
             )
         return self
+
+    @property
+    def kept_samples(self) -> int:
+        """Samples of the time course of a run."""
+        return self.kept_revolutions * int(of_wheels(self.teeth)[0]) * self.samples_per_period

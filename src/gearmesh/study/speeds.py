@@ -84,7 +84,7 @@ def _listed(stated: Mapping[str, Any], pair: Pair, where: str) -> dict[str, Any]
         return others | {"values": values}
     if not isinstance(further, list | tuple):
         return others  # validation reports them
-    return others | {"values": [*values, *further]}
+    return others | {"values": [*further, *values]}
 
 
 def check_constant_speed(pair: Pair, wanted: str) -> None:

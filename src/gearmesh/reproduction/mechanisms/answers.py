@@ -9,7 +9,6 @@ import numpy as np
 import xarray as xr
 
 from gearmesh.errors import NoOrbit
-from gearmesh.interface.orbits import find_orbit
 from gearmesh.reproduction.mechanisms.bands import NEAR_FIRST_JUMP, band
 from gearmesh.reproduction.mechanisms.bands import VARIANTS as BANDED
 from gearmesh.reproduction.mechanisms.long_runs import shares
@@ -233,6 +232,9 @@ def time_constant(pair: Pair, variant: str, nu: float) -> float:
     their two have the size exp(-ζ w T), with the body's natural frequency w; they are left out.
     The result is not-a-number if there is no stable orbit of the mesh period.
     """
+    # numba is loaded at the first orbit: code that only reads results imports this module, too.
+    from gearmesh.interface.orbits import find_orbit
+
     try:
         orbit = find_orbit(pair, variant, nu)
     except NoOrbit:

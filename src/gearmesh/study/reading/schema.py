@@ -66,7 +66,16 @@ class Section(BaseModel):
         declared = field.json_schema_extra
         if not isinstance(declared, dict) or (value is None and not field.is_required()):
             return value
-        return read_declared(value, declared)
+        if declared["structured"]:
+            return value  # a list of sections, or a word
+        kinds = (field.annotation, *get_args(field.annotation))
+        if isinstance(value, list | tuple) and not any(get_origin(kind) is tuple for kind in kinds):
+            raise ValueError("allowed is a single value")
+        found = read_declared(value, declared)
+        if int in kinds and any(number % 1.0 for number in of_wheels(found)):
+            several = isinstance(found, tuple)
+            raise ValueError(f"allowed {'are whole numbers' if several else 'is a whole number'}")
+        return found
 
     def __str__(self) -> str:
         stated = self.model_dump(exclude_none=True)
@@ -198,12 +207,12 @@ def shown(value: object) -> str:
     """Write a value that was found, in one short line."""
     if value is None:
         return "nothing"
+    if type(value).__module__ not in ("builtins", "numpy"):
+        return f"an object of type {type(value).__name__}"
     if isinstance(value, Mapping):
         return "a mapping"
     if isinstance(value, list | tuple):
         return f"a list of {len(value)}" if value else "an empty list"
-    if type(value).__module__ not in ("builtins", "numpy"):
-        return f"an object of type {type(value).__name__}"
     try:
         text = repr(value)
     except ValueError:  # an integer with thousands of digits

@@ -108,6 +108,9 @@ def _load(text: str, where: str) -> object:
     except yaml.MarkedYAMLError as error:
         mark = error.problem_mark or error.context_mark
         line = f" line {mark.line + 1}, column {mark.column + 1}:" if mark else ""
-        raise InputError(f"{where}:{line} {error.problem or error.context}") from None
+        problem = error.problem or error.context
+        if problem == "but found another document":
+            problem = "found a second document; allowed is one"
+        raise InputError(f"{where}:{line} {problem}") from None
     except (yaml.YAMLError, RecursionError, ValueError) as error:
         raise InputError(f"{where}: not YAML ({error})") from None
