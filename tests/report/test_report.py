@@ -269,9 +269,11 @@ def test_the_same_results_give_the_same_page(small_run, small_study, entries):
 
 def test_text_of_the_ledger_cannot_become_markup(small_run, small_study):
     evil = claim(statement="<script>alert(1)</script>", measured={"<b>": 1.0}, detail="<i>")
-    text = render(small_study, [evil], report.open_dataset(small_run / PLACES.resonance))
-    for piece in (text, claims_table([evil])):
-        assert not {"script", "b", "i"} & set(Page(piece).tags) - {"b"}
+    plain = claim(statement="alert(1)", measured={"b": 1.0}, detail="i")
+    resonance = report.open_dataset(small_run / PLACES.resonance)
+    pages = ([render(small_study, [one], resonance), claims_table([one])] for one in (evil, plain))
+    for piece, other in zip(*pages, strict=True):
+        assert Page(piece).tags == Page(other).tags
         assert "<script>" not in piece
         assert "&lt;b&gt;" in piece
 
