@@ -151,9 +151,15 @@ def test_a_field_takes_any_allowed_number_and_no_other(explorer):
         explorer.fill(backlash, typed)
         explorer.press(backlash, "Enter")
         assert explorer.input_value(backlash) == kept
-    explorer.fill("#nu-field", "0.77125")
-    explorer.press("#nu-field", "Enter")
-    assert explorer.evaluate("gearmesh.view.nu") == 0.77125
+    for typed, kept in (("-5", 0.05), ("1e9", 5), ("", 5), ("0.77125", 0.77125)):
+        explorer.fill("#nu-field", typed)
+        explorer.press("#nu-field", "Enter")
+        assert explorer.evaluate("gearmesh.view.nu") == kept
+        assert float(explorer.input_value("#nu-field")) == kept
+    revolutions = "[data-parameter=revolutions]"
+    explorer.fill(revolutions, "10000")
+    explorer.press(revolutions, "Enter")
+    assert explorer.input_value(revolutions) == "400"
 
 
 def test_the_picture_answers_to_pointer_keys_and_touch(explorer):

@@ -223,7 +223,7 @@ def test_figures_notebooks_and_what_the_report_reads():
     assert names[:3] == [
         *("datasets/branches.nc", "datasets/special_points.json", "datasets/thresholds.json"),
     ]
-    assert names[3] == "datasets/basins.nc" and len(names) == 3 + 7 + 12
+    assert names[3] == "datasets/basins.nc" and len(names) == 3 + 8 + 12
     assert names[-12:] == [
         f"figures/{name}.{kind}" for name in paths.WHY_FIGURES for kind in ("png", "svg")
     ]

@@ -152,6 +152,11 @@ WRONG = {
     "pair of a map": lambda _: gm.campbell("paper", "c-both", 0.66),
     "quantity": lambda pair: gm.campbell(pair, "c-both", 0.66, quantity=["y"], revolutions=1),
     "order": lambda pair: gm.campbell(pair, "c-both", 0.66, highest_order="5"),
+    "no file": lambda _: gm.load(None),
+    "no chart": lambda _: gm.read_pitch_chart(5),
+    "a width of many numbers": lambda pair: gm.geometry(
+        module="3 mm", teeth=21, face_width=np.ones(99)
+    ),
     "no run": lambda _: gm.spectrum(None),
     "run as a start": lambda pair: gm.sweep(pair, "c-both", 0.7, start=xr.Dataset()),
     "no frequency": lambda pair: gm.sweep(pair, "c-both", []),

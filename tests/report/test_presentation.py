@@ -7,6 +7,8 @@ from entries import claim
 from hypothesis import given
 from hypothesis import strategies as st
 
+from gearmesh.data import paths
+from gearmesh.report import glossary
 from gearmesh.report.presentation import expected, found, number, quantity, typeset
 
 
@@ -45,6 +47,7 @@ def test_a_written_number_is_the_number(value):
         ((0.0, 0.0), "N*m*s/rad", "0 N m s/rad"),
         ((), "mm", "none"),
         (((0.001, 0.002), (0.0, 0.5)), "mm", "(0.001, 0.002), (0, 0.5) mm"),
+        ((2.5,), "kg*m^2", "2.5 kg m²"),
         (False, "1", "no"),
         ("sqrt", "1", "sqrt"),
     ],
@@ -92,6 +95,7 @@ def test_what_is_expected_is_written_in_lines(target, tolerance, lines):
         ("ν_s and C_max", "ν<sub>s</sub> and C<sub>max</sub>"),
         ("Ω_s² = C_s/m_red", "Ω<sub>s</sub>² = C<sub>s</sub>/m<sub>red</sub>"),
         ("a < b", "a &lt; b"),
+        ("b_φ", "b<sub>φ</sub>"),
         ("time-course", "time-course"),
     ],
 )
@@ -102,3 +106,17 @@ def test_symbols_are_typeset(text, words):
 def test_variants_are_written_with_the_symbols_of_the_paper():
     text = typeset("c-material, c-material-5x, b-lubricant, d-both, a-conservative")
     assert text.striptags() == "c-□, c-□ (5k), b-•, d-×, a-○"
+
+
+def test_two_digits_of_a_number_above_a_hundred_need_no_power_of_ten():
+    assert [number(value, 2) for value in (123.4, 4567.0, 12.3)] == ["120", "4600", "12"]
+
+
+def test_the_glossary_gives_terms_with_their_explanations(root):
+    parts = dict(glossary.parts((root / paths.GLOSSARY).read_text(encoding="utf-8")))
+    motion = dict(parts["Motion"])
+    assert motion["isola"].startswith("A closed branch.")
+    assert {"fold", "flip", "cusp", "torus", "resonant orbit", "sensitive"} <= {*motion}
+    symbols = dict(parts["Symbols in figures"])
+    assert "<code>-lubricant</code>" in symbols["<code>•</code> (bullet)"]
+    assert "m<sub>red</sub>" in {*dict(parts["Gear mesh"])}

@@ -76,7 +76,7 @@ def built(root, small_run, small_study, entries):
     What lies behind the curves is left out: `tests/workflow` has the report of a whole run.
     """
     write_entries(small_run / PLACES.ledger, entries)
-    for folder in ("workflow", "config"):
+    for folder in ("workflow", "config", "docs"):
         (small_run / folder).symlink_to(root / folder)
     for name in paths.NOTEBOOK_NAMES:
         executed = small_run / PLACES.executed_notebook(name)

@@ -28,7 +28,7 @@ LIMITS = float(NUS[0]), float(NUS[-1])
 
 @pytest.fixture(scope="module")
 def found(pair):
-    return all_branches(pair, NAME, LIMITS, reached(pair, NAME, NUS))
+    return all_branches(pair, NAME, LIMITS, reached(pair, NAME, NUS)[1])
 
 
 def test_isolas_of_longer_periods_are_found_and_closed_between_their_folds(found):
@@ -90,9 +90,9 @@ def test_no_attractor_is_missing_without_friction_on_rigid_supports(pair):
     """Those of b-□ are found again by runs, which know nothing of the other pair's branches."""
     name, nus = "b-material", np.linspace(1.0, 1.2, 33)
     limits, simpler = (1.0, 1.2), pair.replace(**WITHOUT_SUPPORTS)
-    known = all_branches(pair, name, limits, reached(pair, name, nus))
+    known = all_branches(pair, name, limits, reached(pair, name, nus)[1])
     again = all_branches(simpler, name, limits, carried_over(known, simpler))
-    runs = reached(simpler, name, nus)
+    _, runs = reached(simpler, name, nus)
     assert {orbit.periods for orbit in runs} == {1, 2}
     assert all(sum(holds(branch, orbit) for branch in again) == 1 for orbit in runs)
     kinds = [(point.kind, point.orbit.periods) for branch in again for point in branch.special]

@@ -14,6 +14,7 @@ import yaml
 from orbits_in_tables import distance
 from project import Project
 
+from gearmesh.data.datasets import open_dataset
 from gearmesh.dynamics.attraction.classification import classify
 
 FIGURES = [f"fig{number}" for number in range(2, 8)]
@@ -64,6 +65,18 @@ def test_what_lies_behind_the_curves_is_there_and_explains_claims(smoke):
     assert "0.638630" in mechanisms["F3.2"]
     branches = xr.open_dataset(smoke.study / "datasets/branches.nc")
     assert set(branches["variant"].values) == {"c-material", "c-lubricant"}
+
+
+def test_the_long_run_motion_of_each_case_is_stated_and_shown(smoke, small_study):
+    ends = open_dataset(smoke.study / "datasets/attractors.nc")
+    assert tuple(ends["variant"].values) == small_study.variants
+    plan = small_study.plan.frequencies()
+    assert int((ends["kind"] > 0).sum()) == sum(len(nus) for _, nus in plan)
+    page = (smoke.study / "report/index.html").read_text(encoding="utf-8")
+    section = page[page.index("How every case ends") : page.index("All special points")]
+    rows = re.findall(r'scope="row">(.*?)</th>', section)
+    assert len(rows) == 1 + 2 + 7  # variant a, □, ×, and each variant with •
+    assert "100 % of all □ settle within the 105 mesh periods of 5 revolutions" in section
 
 
 def test_every_orbit_on_which_a_case_ends_lies_on_a_branch(smoke, small_study):

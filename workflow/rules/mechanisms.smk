@@ -1,10 +1,12 @@
-# What lies behind the response curves: the branches of orbits.
+# What lies behind the response curves: the branches of orbits, and how every case ends. Runs that
+# are classified give the orbits from which branches begin, so one job writes both.
 rule branches:
     input:
         again=PLAN.again("branches"),
     output:
         PLACES.branches,
         PLACES.special_points,
+        PLACES.mechanism("attractors"),
     log:
         PLACES.log("branches"),
     benchmark:

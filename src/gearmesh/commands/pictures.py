@@ -1,7 +1,6 @@
 """``gearmesh plot`` and ``gearmesh compare``."""
 
 import argparse
-import json
 from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
@@ -54,12 +53,9 @@ def _label(run: Any) -> str:
 
 def _parameter_rows(first: Any, second: Any) -> list[str]:
     """List the variant, frequency and parameters in which two runs differ."""
-    stated = [
-        {"variant": run.attrs["variant"], "nu_s": run.attrs["nu_s"]}
-        | json.loads(run.attrs["parameters"])
-        for run in (first, second)
-    ]
-    names = [name for name in stated[0] if stated[0][name] != stated[1].get(name)]
-    if not names:
+    from gearmesh.report.run_names import differing
+
+    found = differing(first, second)
+    if not found:
         return ["A and B state the same run"]
-    return [f"{name}: A {stated[0][name]}, B {stated[1].get(name)}" for name in names]
+    return [f"{name}: A {one}, B {other}" for name, (one, other) in found.items()]

@@ -51,8 +51,8 @@ def simulate(options: argparse.Namespace) -> int:
     if response.sensitive:
         error = max(response.y_max_error, response.y_min_error) * y_st
         print(
-            f"sensitive: this motion amplifies small errors; y_max and y_min may be off by "
-            f"{error:.1g} mm"
+            f"sensitive: this motion amplifies small errors; the estimated error of y_max "
+            f"and y_min is {error:.1g} mm"
         )
     return 0
 

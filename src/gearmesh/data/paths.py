@@ -8,6 +8,7 @@ PAPER = CONFIG / "paper.yaml"
 SMOKE = CONFIG / "smoke.yaml"
 CLAIMS = CONFIG / "claims.yaml"
 NOTEBOOKS = Path("notebooks")
+GLOSSARY = Path("docs/glossary.md")
 CAPTIONS = Path("workflow/report")
 RESULTS = Path("results")
 
@@ -20,7 +21,10 @@ CHECKED = ("printed", *NOTEBOOK_NAMES)
 """The checks of claims: one for the printed numbers, and one for each notebook."""
 
 
-MECHANISMS = ("basins", "phases", "sweeps", "design_map", "bands", "lyapunov", "special_curves")
+MECHANISMS = (
+    *("basins", "phases", "sweeps", "design_map", "bands", "lyapunov", "special_curves"),
+    "attractors",
+)
 """Datasets about what lies behind the curves, besides the branches and their special points."""
 
 WHY = "why"

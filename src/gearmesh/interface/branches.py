@@ -215,6 +215,8 @@ def follow_special(
     ------
     NoOrbit
         If the curve cannot be followed; the message gives the reason.
+    InputError
+        One line, if an argument is wrong.
     """
     if not isinstance(point, SpecialPoint):
         raise InputError(f"point: found {shown(point)}; allowed is one of Branch.special")

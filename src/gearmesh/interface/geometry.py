@@ -6,6 +6,7 @@ from typing import Any
 from gearmesh.errors import InputError
 from gearmesh.model.involute import Involute
 from gearmesh.study.reading import units
+from gearmesh.study.reading.schema import shown
 
 UM_PER_MM = 1000.0
 
@@ -152,7 +153,7 @@ def geometry(
     """
     z_3, z_2 = _both("teeth", teeth, "1", 3, 1000)
     if z_3 % 1 or z_2 % 1:
-        raise InputError(f"teeth: found {teeth!r}; allowed are whole numbers")
+        raise InputError(f"teeth: found {shown(teeth)}; allowed are whole numbers")
     shift = _both("profile_shift", profile_shift, "1", -1.0, 2.0)
     tips = None
     if tip_diameters is not None:
@@ -200,10 +201,10 @@ def _read(name: str, value: object, unit: str, low: float, high: float) -> float
     try:
         number = units.parse(value, unit)
     except ValueError as error:
-        raise InputError(f"{name}: found {value!r}; {error}") from None
+        raise InputError(f"{name}: found {shown(value)}; {error}") from None
     if not low <= number <= high:
-        shown = "" if unit == "1" else f" {unit}"
-        raise InputError(f"{name}: found {value!r}; allowed is {low:g} to {high:g}{shown}")
+        written = "" if unit == "1" else f" {unit}"
+        raise InputError(f"{name}: found {shown(value)}; allowed is {low:g} to {high:g}{written}")
     return number
 
 

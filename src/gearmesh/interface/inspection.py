@@ -2,9 +2,11 @@
 
 import csv
 import itertools
+from os import PathLike
 from pathlib import Path
 
 from gearmesh.errors import InputError
+from gearmesh.study.reading.schema import shown
 
 _COLUMNS = ("F_p", "f_p")
 
@@ -33,6 +35,8 @@ def read_pitch_chart(path: str | Path, unit: str = "um") -> list[str]:
     InputError
         One line: which file and line, what was found, what is allowed.
     """
+    if not isinstance(path, str | PathLike):
+        raise InputError(f"path: found {shown(path)}; allowed is the name of a file")
     try:
         with Path(path).open(newline="", encoding="utf-8-sig") as file:
             rows = list(csv.DictReader(file, skipinitialspace=True))

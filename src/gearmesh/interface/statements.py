@@ -112,7 +112,7 @@ def bare(value: Any) -> Any:
 def read_whole(name: str, value: Any, low: int, high: int) -> int:
     """Return a whole number; raises InputError if it is none from `low` to `high`."""
     try:
-        number = None if isinstance(value, bool) else operator.index(value)
+        number = None if isinstance(value, bool) else operator.index(bare(value))
     except TypeError:
         number = None
     if number is None or not low <= number <= high:

@@ -242,7 +242,7 @@ _COMMITTED: dict[str, Callable[[], list[Path]]] = {
     "report": lambda: [
         *_templates(),
         *(paths.CAPTIONS / f"{name}.rst" for name in (*paths.FIGURE_NAMES, *paths.WHY_FIGURES)),
-        *(layout.IDENTIFIED, layout.SETTINGS, paths.CLAIMS),
+        *(layout.IDENTIFIED, layout.SETTINGS, paths.CLAIMS, paths.GLOSSARY),
     ],
     "box": lambda: [paths.CLAIMS],
     "identified": lambda: [layout.SETTINGS, paths.CLAIMS],
@@ -262,7 +262,7 @@ _FACTS: dict[str, Callable[..., object]] = {
     "datasets": lambda plan: (plan.study.title, plan.pair, _grid(plan.study)),
     "thresholds": lambda plan: (plan.pair, plan.study.variants),
     "branches": lambda plan: (
-        *(plan.study.title, plan.pair, plan.mechanisms.variants),
+        *(plan.study.title, plan.pair, plan.mechanisms.variants, _grid(plan.study)),
         plan.study.plan.nu.all,
     ),
     **{

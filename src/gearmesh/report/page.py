@@ -20,7 +20,7 @@ from gearmesh.data.paths import Places
 from gearmesh.data.writing import write_text
 from gearmesh.identification import layout, table
 from gearmesh.identification.settings import load_settings
-from gearmesh.report import description, verification, why
+from gearmesh.report import description, glossary, verification, why
 from gearmesh.report.explorer import views
 from gearmesh.report.identified import section
 from gearmesh.report.presentation import environment
@@ -40,6 +40,8 @@ class Figure:
         Its id, its number and what it shows.
     picture : str
         The picture as the address of an image.
+    file : str
+        Address of the file of the picture, beside the page.
     notebook : str, optional
         Page of the notebook that draws it.
     view : str, optional
@@ -52,6 +54,7 @@ class Figure:
     title: str
     caption: str
     picture: str
+    file: str
     notebook: str | None = None
     view: str | None = None
     entries: tuple[Entry, ...] = ()
@@ -114,6 +117,7 @@ def _why(study: Study, places: Places) -> str:
             title,
             " ".join((paths.CAPTIONS / f"{name}.rst").read_text(encoding="utf-8").split()),
             embedded(places.figure_files(name)[1]),
+            _file(name, "svg"),
             f"notebooks/{paths.WHY}.html",
             views.FIGURES[name],
         )
@@ -184,6 +188,7 @@ def render(
         identified=identified,
         verified=verified,
         orbits=orbits,
+        glossary=list(glossary.parts(paths.GLOSSARY.read_text(encoding="utf-8"))),
         computation=list(description.computation(study, resonance)),
         sensitivity=list(_sensitivity(resonance)),
     )
@@ -204,7 +209,10 @@ def render_study(study: Study, resonance: xr.Dataset, pictures: Mapping[str, str
     template = environment().get_template("study.html.j2")
     return template.render(
         study=study,
-        figures=[Figure(name, *STUDY_FIGURES[name], picture) for name, picture in pictures.items()],
+        figures=[
+            Figure(name, *STUDY_FIGURES[name], picture, _file(name, "png"))
+            for name, picture in pictures.items()
+        ],
         parameters=description.parameters(study),
         variants=[_row(resonance.sel(variant=name)) for name in resonance["variant"].values],
         computation=list(description.computation(study, resonance)),
@@ -217,10 +225,16 @@ def _figure(name: str, caption: str, picture: str, entries: Iterable[Entry]) -> 
         title=f"Fig. {name.removeprefix('fig')}",
         caption=" ".join(caption.split()),
         picture=picture,
+        file=_file(name, "svg"),
         notebook=f"notebooks/{name}.html" if name in paths.NOTEBOOK_NAMES else None,
         view=views.FIGURES.get(name),
         entries=tuple(entry for entry in entries if entry.figure == name),
     )
+
+
+def _file(name: str, ending: str) -> str:
+    """Return where the file of a figure is, seen from the page."""
+    return f"../figures/{name}.{ending}"
 
 
 def _sensitivity(resonance: xr.Dataset) -> Iterable[tuple[str, int, int, float]]:

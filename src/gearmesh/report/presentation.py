@@ -36,7 +36,9 @@ def number(value: float | None, digits: int = 6) -> str:
     if 0 < abs(value) < 1e-3:
         mantissa, exponent, power = f"{value:.{digits - 1}e}".partition("e")
         mantissa = mantissa.rstrip("0").rstrip(".") if "." in mantissa else mantissa
-    if exponent:
+    if exponent and 1.0 <= abs(value) < 1e4:
+        mantissa = f"{float(f'{value:.{digits}g}'):.0f}"
+    elif exponent:
         mantissa += f"·10{str(int(power)).translate(_RAISED)}"
     return mantissa.replace("-", "−")
 
@@ -101,7 +103,7 @@ def _target(target: Any, tolerance: float | None) -> str:
 def typeset(text: str) -> Markup:
     """Write symbols as the paper does: ν_s with a subscript, c-material as c-□."""
     text = _VARIANT.sub(_symbol, str(escape(text)))
-    return Markup(re.sub(r"(?<=[\w;])_([A-Za-z0-9]+)", r"<sub>\1</sub>", text))
+    return Markup(re.sub(r"(?<=[\w;])_([A-Za-z0-9α-ω]+)", r"<sub>\1</sub>", text))
 
 
 def _symbol(match: re.Match[str]) -> str:
@@ -122,7 +124,13 @@ def quantity(value: Any, unit: str) -> str:
         return ", ".join(quantity(item, unit) for item in shown) or "none"
     if unit == "rad":
         return f"{number(math.degrees(value))}°"
-    return number(value) + ("" if unit == "1" else f" {unit.replace('*', ' ')}")
+    return number(value) + ("" if unit == "1" else f" {unit_text(unit)}")
+
+
+def unit_text(unit: str) -> str:
+    """Write a unit with spaces for products and raised powers: kg*m^2 as kg m²."""
+    raised = re.sub(r"\^(-?\d+)", lambda power: power[1].translate(_RAISED), unit)
+    return raised.replace("*", " ")
 
 
 @cache

@@ -8,6 +8,7 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from gearmesh.report.run_names import suffixes
 from gearmesh.reproduction.figures import palette
 from gearmesh.reproduction.figures.canvas import WIDTH, shade_regions, styled
 from gearmesh.reproduction.figures.orbit import scale
@@ -41,9 +42,10 @@ def draw_ramps(runs: Sequence[xr.Dataset]) -> Figure:
     figure = Figure(figsize=(WIDTH, 6.4 if mapped else 3.6), layout="constrained")
     axes = figure.subplots(2 if mapped else 1, 1, squeeze=False, sharex=True)[:, 0]
     letters = ("",) if len(runs) == 1 else ("A: ", "B: ")
-    for run, letter, (colour, line) in zip(runs, letters, _LOOKS, strict=False):
+    endings = suffixes(runs)
+    for run, letter, ending, (colour, line) in zip(runs, letters, endings, _LOOKS, strict=False):
         first, last = run["strobe_nu"].values[[0, -1]]
-        name = f"{letter}{run.attrs['variant']}, $\\nu_s$ from {first:g} to {last:g}"
+        name = f"{letter}{run.attrs['variant']}, $\\nu_s$ from {first:g} to {last:g}{ending}"
         for extreme, label in (("period_y_max_rel", name), ("period_y_min_rel", None)):
             axes[0].plot(run["period_nu"], run[extreme], color=colour, ls=line, lw=0.9, label=label)
     response = axes[0]
@@ -55,7 +57,7 @@ def draw_ramps(runs: Sequence[xr.Dataset]) -> Figure:
     if mapped:
         _draw_orders(figure, axes[1], runs[0])
     axes[-1].set_xlabel("mesh frequency $\\nu_s$")
-    figure.legend(*response.get_legend_handles_labels(), loc="outside upper center", ncols=2)
+    figure.legend(*response.get_legend_handles_labels(), loc="outside upper center")
     return figure
 
 

@@ -14,6 +14,7 @@ from gearmesh.data.writing import replacing
 from gearmesh.errors import InputError
 from gearmesh.interface.spectra import spectrum
 from gearmesh.report.ramp_figures import draw_ramps, is_ramp
+from gearmesh.report.run_names import suffixes
 from gearmesh.reproduction.figures import palette
 from gearmesh.reproduction.figures.canvas import STYLE, WIDTH, V, shade_regions, styled
 from gearmesh.reproduction.figures.orbit import last_periods, scale, switches
@@ -48,8 +49,11 @@ def draw(runs: Sequence[xr.Dataset]) -> Figure:
     axes = figure.subplots(2 if loaded else 1, 2, width_ratios=(1.0, 1.4), squeeze=False)
     plane, times = axes[0]
     letters = ("",) if len(runs) == 1 else ("A: ", "B: ")
-    for run, letter, (colour, line) in zip(runs, letters, _LOOKS, strict=False):
-        name = f"{letter}{run.attrs['variant']}, $\\nu_s$ = {run.attrs['nu_s']:g}"
+    endings = suffixes(runs)
+    for run, letter, ending, (colour, line) in zip(runs, letters, endings, _LOOKS, strict=False):
+        name = f"{letter}{run.attrs['variant']}, $\\nu_s$ = {run.attrs['nu_s']:g}{ending}"
+        if loaded:
+            name += f", $K_v$ = {float(run['dynamic_factor']):.3g}"
         _draw_plane(plane, run, colour, line)
         _draw_times(times, run, name, colour, line)
         if loaded:
@@ -67,7 +71,7 @@ def draw(runs: Sequence[xr.Dataset]) -> Figure:
     times.set_ylabel("$y$ in $y_{st}$")
     if loaded:
         _label_loads(axes[1, 0], axes[1, 1])
-    figure.legend(*times.get_legend_handles_labels(), loc="outside upper center", ncols=2)
+    figure.legend(*times.get_legend_handles_labels(), loc="outside upper center")
     return figure
 
 
@@ -94,9 +98,7 @@ def _draw_loads(orders: Axes, forces: Axes, run: xr.Dataset, colour: str, line: 
     found = spectrum(run, "force_normal").sel(order=slice(0.0, HIGHEST_ORDER))
     orders.plot(found["order"][1:], found["force_normal"][1:], color=colour, ls=line, lw=0.8)
     course = last_periods(run, min(PERIODS_SHOWN, scale(run).kept_periods))
-    factor = float(run["dynamic_factor"])
-    label = f"$K_v$ = {factor:.3g}"
-    forces.plot(course["period"], course["force_normal"], color=colour, ls=line, label=label)
+    forces.plot(course["period"], course["force_normal"], color=colour, ls=line)
     forces.margins(x=0.0, y=0.1)
 
 
@@ -111,7 +113,6 @@ def _label_loads(orders: Axes, forces: Axes) -> None:
     forces.set_xlabel("time $t/T$ in mesh periods")
     forces.set_ylabel("tooth force in N")
     forces.axhline(0.0, color="0.6", lw=0.6)
-    forces.legend(loc="upper right")
 
 
 def save(figure: Figure, path: Path) -> None:
@@ -163,6 +164,6 @@ def differences(first: xr.Dataset, second: xr.Dataset) -> list[tuple[str, str, s
         difference = (other - one) / one if one else np.nan
         unit = variable.attrs.get("units", "1")
         label = str(name) if unit == "1" else f"{name} in {unit}"
-        shown = "0" if one == other else f"{difference:.2e}" if np.isfinite(difference) else "–"
-        rows.append((label, f"{one:.10g}", f"{other:.10g}", shown))
+        shown = "0" if one == other else f"{difference:.1e}" if np.isfinite(difference) else "–"
+        rows.append((label, f"{one:.6g}", f"{other:.6g}", shown))
     return rows

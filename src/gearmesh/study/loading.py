@@ -219,7 +219,7 @@ def load(path: str | Path) -> Study:
     InputError
         With one line: file, key, what was found, what is allowed.
     """
-    if not isinstance(path, str | Path):
+    if not isinstance(path, str | os.PathLike):
         raise InputError(f"path: found {shown(path)}; allowed is the name of a file")
     study = load_study(path)
     if study.claims is not None and not os.path.isfile(study.claims):

@@ -7,14 +7,15 @@ from gearmesh.study.cases import Mechanisms, Study
 
 
 def branches(study: Study, places: Places) -> list[Path]:
-    """Follow the orbits of the variants, and locate their special points.
+    """Classify the cases of the study, follow the orbits of its variants, locate special points.
 
-    Those of periods 1 and 2 are located again without friction and on rigid supports.
+    The special points of periods 1 and 2 are located again without friction and on rigid supports.
     """
     import json
 
     from gearmesh.data.writing import write_text
-    from gearmesh.reproduction.mechanisms import files, tables
+    from gearmesh.dynamics.attraction.classification import classify
+    from gearmesh.reproduction.mechanisms import files, long_runs, tables
     from gearmesh.reproduction.mechanisms.attractors import (
         all_branches,
         carried_over,
@@ -24,16 +25,22 @@ def branches(study: Study, places: Places) -> list[Path]:
 
     limits = float(study.nu[0]), float(study.nu[-1])
     simpler = study.pair.replace(**WITHOUT_SUPPORTS)
-    made, rows, rows_without = [], [], []
+    made, rows, rows_without, runs = [], [], [], {}
     for name in _mechanisms(study).variants:
-        found = all_branches(study.pair, name, limits, reached(study.pair, name, study.nu))
+        runs[name], ends = reached(study.pair, name, study.nu)
+        found = all_branches(study.pair, name, limits, ends)
         again = all_branches(simpler, name, limits, carried_over(found, simpler))
         made += [tables.table(name, found)] if found else []
         rows += tables.rows(name, found, {})
         rows_without += tables.rows(name, again, WITHOUT_SUPPORTS)
+    for variant, nus in study.plan.frequencies():
+        if variant.name not in runs:
+            runs[variant.name] = classify([study.pair.problem(variant, nu) for nu in nus])
     files.write(places.branches, tables.joined(made), study, "branches of orbits")
+    kinds = long_runs.table(study, runs)
+    files.write(places.mechanism("attractors"), kinds, study, "long-run motion of the cases")
     write_text(places.special_points, json.dumps([*rows, *rows_without], indent=1) + "\n")
-    return [places.branches, places.special_points]
+    return [places.branches, places.special_points, places.mechanism("attractors")]
 
 
 def basins(study: Study, places: Places) -> list[Path]:

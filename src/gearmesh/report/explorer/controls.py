@@ -1,8 +1,10 @@
 """The parameters that the explorer can change, and how its sliders show them."""
 
+import math
 from dataclasses import dataclass
 from typing import Any
 
+from gearmesh.report.presentation import unit_text
 from gearmesh.study.pair import Pair
 from gearmesh.study.reading.schema import of_wheels
 
@@ -22,6 +24,8 @@ class Control:
         library's own unit.
     logarithmic : bool
         Whether the slider is logarithmic; `step` is then one of the decimal logarithm.
+    most : float
+        Greatest number that the field takes; the study may state a greater one.
     """
 
     name: str
@@ -30,6 +34,7 @@ class Control:
     step: float
     scale: str = ""
     logarithmic: bool = False
+    most: float = math.inf
 
 
 _LENGTH = "static_deflection"
@@ -47,7 +52,7 @@ CONTROLS = (
     Control("body_mass", 1.0, 1e4, 0.02, "reduced_mass", logarithmic=True),
     Control("bearing_stiffness", 1e4, 1e8, 0.02, logarithmic=True),
     Control("bearing_damping_ratio", 0.0, 0.5, 0.005),
-    Control("revolutions", 1, 40, 1),
+    Control("revolutions", 1, 40, 1, most=400),  # 400 take some 0.6 s, and the page waits
 )
 """In the order of the page."""
 
@@ -88,13 +93,14 @@ def shown(pair: Pair) -> list[Shown]:
     found = []
     for control in CONTROLS:
         stated, factor = declared[control.name], 1.0
-        unit = "" if stated["unit"] == "1" else stated["unit"].replace("*", " ")
+        unit = "" if stated["unit"] == "1" else unit_text(stated["unit"])
         if control.scale:
             factor, unit = float(getattr(pair, control.scale)), _SYMBOLS[control.scale]
         value = of_wheels(getattr(pair, control.name))[0]
         # Only the initial displacement may be open: static equilibrium, which is y_st.
         value = factor if value is None else value
         least, greatest = (float(stated[end]) / factor for end in ("low", "high"))
+        greatest = min(greatest, max(control.most, value / factor))
         found.append(
             Shown(
                 *(control, stated["symbol"], stated["description"], unit),

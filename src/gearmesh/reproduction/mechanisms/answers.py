@@ -9,9 +9,9 @@ import numpy as np
 import xarray as xr
 
 from gearmesh.errors import NoOrbit
-from gearmesh.interface.orbits import find_orbit
 from gearmesh.reproduction.mechanisms.bands import NEAR_FIRST_JUMP, band
 from gearmesh.reproduction.mechanisms.bands import VARIANTS as BANDED
+from gearmesh.reproduction.mechanisms.long_runs import shares
 from gearmesh.reproduction.mechanisms.starts import JUMPED, VARIANT
 from gearmesh.reproduction.mechanisms.sweeps import DIRECTIONS, SEPARATE
 from gearmesh.reproduction.mechanisms.tables import Row
@@ -101,6 +101,8 @@ def answers(
         "chaos": _chaos(datasets["lyapunov"]),
         "contact_up_to": _contact_up_to(datasets["special_curves"]),
         "map": _map(datasets["design_map"]),
+        "ends": shares(datasets["attractors"], pair.revolutions * pair.teeth_3),
+        "ended": datasets["attractors"].attrs,
     }
 
 
@@ -230,6 +232,9 @@ def time_constant(pair: Pair, variant: str, nu: float) -> float:
     their two have the size exp(-ζ w T), with the body's natural frequency w; they are left out.
     The result is not-a-number if there is no stable orbit of the mesh period.
     """
+    # numba is loaded at the first orbit: code that only reads results imports this module, too.
+    from gearmesh.interface.orbits import find_orbit
+
     try:
         orbit = find_orbit(pair, variant, nu)
     except NoOrbit:

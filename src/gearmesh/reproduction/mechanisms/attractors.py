@@ -13,7 +13,7 @@ import numpy as np
 
 from gearmesh.dynamics.attraction.attractors import SAME
 from gearmesh.dynamics.attraction.basins import grid
-from gearmesh.dynamics.attraction.classification import classify
+from gearmesh.dynamics.attraction.classification import LongRun, classify
 from gearmesh.dynamics.periodic import orbits
 from gearmesh.errors import NoOrbit
 from gearmesh.interface.branches import Branch, follow
@@ -54,14 +54,14 @@ def all_branches(pair: Pair, variant: str, limits: Range, ends: Iterable[Orbit])
     return [*known, *further(known, ends, limits)]
 
 
-def reached(pair: Pair, variant: str, nus: np.ndarray) -> list[Orbit]:
-    """Return the stable orbits on which runs end, or which they approach, in the order of ν_s.
+def reached(pair: Pair, variant: str, nus: np.ndarray) -> tuple[list[LongRun], list[Orbit]]:
+    """Return how the cases end, and the stable orbits on which runs end, or which they approach.
 
     A run starts at each ν_s as the case of the study does. At every sixteenth ν_s, 36 more start
     from a grid of y and y'. Orbits of more than 12 mesh periods are not searched for, and neither
     are motions from which the runs are still far after 60 revolutions
-    (`gearmesh.dynamics.attraction.classification`). Without damping there are none, because no
-    motion attracts another.
+    (`gearmesh.dynamics.attraction.classification`). Without damping there are no such orbits,
+    because no motion attracts another.
 
     Parameters
     ----------
@@ -71,14 +71,23 @@ def reached(pair: Pair, variant: str, nus: np.ndarray) -> list[Orbit]:
         Name of the variant, such as ``c-lubricant``.
     nus : ndarray, shape (n,)
         The mesh frequencies ν_s of the study, ascending.
+
+    Returns
+    -------
+    list of LongRun
+        The long-run motion of the case at each ν_s.
+    list of Orbit
+        The orbits of all runs, in the order of ν_s.
     """
     chosen = read_variant(variant)
     cases = [pair.problem(chosen, float(nu)) for nu in nus]
     if not any(cases[0].material + cases[0].lubricant):
-        return []
+        return classify(cases), []
     others = [run for case in cases[::EVERY] for run in _from_grid(case)]
-    ends = {_name(run.orbit): run.orbit for run in classify([*cases, *others]) if run.orbit}
-    return [Orbit(pair, chosen, ends[name].problem.nu, ends[name]) for name in sorted(ends)]
+    runs = classify([*cases, *others])
+    ends = {_name(run.orbit): run.orbit for run in runs if run.orbit}
+    found = [Orbit(pair, chosen, ends[name].problem.nu, ends[name]) for name in sorted(ends)]
+    return runs[: len(cases)], found
 
 
 def carried_over(found: Iterable[Branch], pair: Pair) -> list[Orbit]:

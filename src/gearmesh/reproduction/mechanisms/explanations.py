@@ -80,8 +80,8 @@ def _jumps(n: _Numbers) -> str:
     name = "c-lubricant"
     return (
         f"First jump: the orbit in contact flips at {n.low(name, 'flip')}, and the stable orbit of "
-        f"period 2 exists below it too; five revolutions of c-lubricant jump at "
-        f"{n.five('first_jump', name)}. Second jump: the resonant orbit exists from its fold at "
+        f"period 2 exists below it too; runs of c-lubricant over five revolutions jump "
+        f"at {n.five('first_jump', name)}. Second jump: the resonant orbit exists from its fold at "
         f"{n.low(name, 'fold')} on, the orbit in contact up to its fold at {n.high(name, 'fold')}; "
         f"the start leaves the basin of the latter at {n.five('second_jump', name)}"
     )
@@ -90,8 +90,8 @@ def _jumps(n: _Numbers) -> str:
 def _linear_fold(n: _Numbers) -> str:
     name = "b-material"
     return (
-        f"The orbit in contact of b-material ends at a fold at {n.high(name, 'fold')}; five "
-        f"revolutions jump at {n.five('jumps', name)}, at the edge of a basin before it"
+        f"The orbit in contact of b-material ends at a fold at {n.high(name, 'fold')}; runs "
+        f"over five revolutions jump at {n.five('jumps', name)}, at the edge of a basin before it"
     )
 
 

@@ -207,12 +207,12 @@ def shown(value: object) -> str:
     """Write a value that was found, in one short line."""
     if value is None:
         return "nothing"
+    if type(value).__module__ not in ("builtins", "numpy"):
+        return f"an object of type {type(value).__name__}"
     if isinstance(value, Mapping):
         return "a mapping"
     if isinstance(value, list | tuple):
         return f"a list of {len(value)}" if value else "an empty list"
-    if type(value).__module__ not in ("builtins", "numpy"):
-        return f"an object of type {type(value).__name__}"
     try:
         text = repr(value)
     except ValueError:  # an integer with thousands of digits

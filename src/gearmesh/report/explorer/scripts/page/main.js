@@ -135,7 +135,11 @@ function listen() {
   on("beside", "change", (event) => { view.beside = event.target.value; changed(); });
   on("periods", "change", (event) => { view.periods = +event.target.value; changed(); });
   on("nu", "input", (event) => { setNu(+event.target.value); changed(); });
-  on("nu-field", "change", (event) => { setNu(parseFloat(event.target.value)); changed(); });
+  on("nu-field", "change", ({ target }) => {
+    setNu(parseFloat(target.value));
+    target.blur(); // so that it shows the number that is used
+    changed();
+  });
   for (const field of document.querySelectorAll("[data-parameter]")) {
     const { parameter } = field.dataset;
     field.addEventListener("change", () => {
