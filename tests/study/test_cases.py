@@ -151,6 +151,22 @@ solver: {tolerance: 1e-8} | solver: unknown key
 """
 
 
+@pytest.mark.parametrize(
+    ("stated", "expected"),
+    [
+        ("revolutions: 999\nkept_revolutions: 999", r": time_courses: found \d+ runs of letter"),
+        (
+            "loads: true\ndirection: up\nrevolutions: 9\nkept_revolutions: 9",
+            r": loads: found 723 runs of letter b",
+        ),
+    ],
+)
+def test_a_study_that_keeps_too_many_samples_is_refused(write, stated, expected):
+    study = load_study(write(f"base: paper.yaml\n{stated}"))
+    with pytest.raises(InputError, match=expected):
+        study.check_samples()
+
+
 @pytest.mark.parametrize("mistake", MISTAKES.strip().splitlines())
 def test_a_wrong_plan_is_reported_in_one_line(refused, mistake):
     stated, _, expected = mistake.partition(" | ")

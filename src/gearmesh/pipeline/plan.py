@@ -346,6 +346,7 @@ def load(
     _name_the_user()
     study = load_study(str(path))
     check_constant_speed(study.pair, f"{path}: each case of a study")
+    study.check_samples()
     plan = Plan(study)
     _ = plan.designs, plan.ledger  # a mistake in them is reported before all jobs
     if main:

@@ -13,6 +13,7 @@ from gearmesh.errors import InputError
 from gearmesh.model.variants import VARIANTS, Variant, variant
 from gearmesh.study.frequencies import MAX_CASES, Frequencies, Nu
 from gearmesh.study.pair import Pair
+from gearmesh.study.parameters import MOST_SWEPT_SAMPLES
 from gearmesh.study.reading.schema import Section, nearest, quantity
 
 
@@ -240,6 +241,22 @@ class Study:
         """Return the cases of a letter of Tab. 1, in their order."""
         plan = self.plan.frequencies()
         return list(self._cases(part for part in plan if part[0].letter == letter))
+
+    def check_samples(self) -> None:
+        """Raise InputError if a job, which holds a letter, keeps more samples than memory should.
+
+        It holds the time courses, and in a sweep those of all runs with loads.
+        """
+        swept = self.plan.loads and self.plan.direction is not None
+        for letter in self.letters:
+            runs = sum(case.time_course or swept for case in self.of_letter(letter))
+            samples = runs * self.pair.kept_samples
+            if samples > MOST_SWEPT_SAMPLES:
+                raise InputError(
+                    f"{self.path}: {'loads' if swept else 'time_courses'}: found {runs} runs of "
+                    f"letter {letter}, which keep {samples} samples; allowed are at most "
+                    f"{MOST_SWEPT_SAMPLES}; keep fewer revolutions, or lower samples_per_period"
+                )
 
     def _cases(self, plan: Iterable[tuple[Variant, tuple[float, ...]]]) -> Iterator[Case]:
         for chosen, nus in plan:

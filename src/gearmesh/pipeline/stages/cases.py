@@ -18,6 +18,7 @@ from gearmesh.model.variants import Variant
 from gearmesh.pipeline.messages import say
 from gearmesh.solvers.response import Response
 from gearmesh.study.cases import Case, Study
+from gearmesh.study.parameters import MOST_SAMPLES
 
 CHUNK = 64
 """Cases that are integrated in one go: enough to fill the lanes, few enough to show progress."""
@@ -38,7 +39,8 @@ def cases(study: Study, places: Places, letter: str) -> list[Path]:
         records = _sweep(study, places, wanted)
     failed = sum(int(record["status"]) != 0 for record in records.values())
     printed = time.monotonic()
-    for chunk in _chunks([case for case in wanted if case not in records]):
+    missing = [case for case in wanted if case not in records]
+    for chunk in _chunks(missing, study.pair.kept_samples):
         computed = _integrate(study, places, chunk)
         failed += sum(int(record["status"]) != 0 for record in computed)
         records.update(zip(chunk, computed, strict=True))
@@ -155,12 +157,18 @@ def _record(study: Study, case: Case, response: Response) -> Record:
     return columns if case.time_course else casefile.without_time_course(columns)
 
 
-def _chunks(wanted: Sequence[Case]) -> Iterator[list[Case]]:
-    """Yield a few cases at a time, those with a time course apart from those without."""
+def _chunks(wanted: Sequence[Case], kept_samples: int) -> Iterator[list[Case]]:
+    """Yield a few cases at a time, those with a time course apart from those without.
+
+    Together they keep no more samples than one run may keep, so that they fit in memory.
+    """
     for time_course in (False, True):
         alike = [case for case in wanted if case.time_course == time_course]
-        for first in range(0, len(alike), CHUNK):
-            yield alike[first : first + CHUNK]
+        most = CHUNK
+        if any(case.time_course or case.loads for case in alike):
+            most = max(1, min(CHUNK, MOST_SAMPLES // kept_samples))
+        for first in range(0, len(alike), most):
+            yield alike[first : first + most]
 
 
 def _remove_others(places: Places, letter: str, written: Sequence[Path]) -> None:
