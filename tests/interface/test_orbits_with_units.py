@@ -189,7 +189,7 @@ WRONG = {
     "periods": lambda pair, orbit: gm.find_orbit(pair, "c-material", 0.7, periods=0),
     "variant": lambda pair, orbit: gm.find_orbit(pair, "c-mterial", 0.7),
     "parameter": lambda pair, orbit: gm.follow(orbit, "backlsh", (0, 1)),
-    "parameter of two numbers": lambda pair, orbit: gm.follow(orbit, "eccentricity", (0, 1)),
+    "parameter of many numbers": lambda pair, orbit: gm.follow(orbit, "profile_deviation", (0, 1)),
     "whole number": lambda pair, orbit: gm.follow(orbit, "teeth", (10, 30)),
     "pair": lambda pair, orbit: gm.find_orbit("paper", "c-material", 0.7),
     "nu in a list": lambda pair, orbit: gm.find_orbit(pair, "c-material", [0.66]),
