@@ -15,7 +15,7 @@ from pathlib import Path
 
 ROOT = Path(__file__).parents[1]
 COPIED = (
-    *("Snakefile", "config", "notebooks", "profiles", "src", "workflow"),
+    *("Snakefile", "config", "docs", "notebooks", "profiles", "src", "workflow"),
     *("CITATION.cff", "requirements.lock"),
 )
 CORES = "2"

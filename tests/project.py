@@ -18,7 +18,7 @@ from gearmesh.solvers.simulation import simulate
 
 ROOT = Path(__file__).parents[1]
 COPIED = (
-    *("Snakefile", "config", "notebooks", "profiles", "src", "workflow"),
+    *("Snakefile", "config", "docs", "notebooks", "profiles", "src", "workflow"),
     *("README.md", "CITATION.cff", "requirements.lock"),
 )
 TINY = """\

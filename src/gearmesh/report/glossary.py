@@ -33,7 +33,7 @@ def _html(text: str) -> Markup:
     """Return a line of Markdown as HTML: code stays as it is, symbols are set as in print."""
     pieces = text.split("`")
     shown = [typeset(piece) for piece in pieces[::2]]
-    shown = [Markup(re.sub(r"\*(\w+)\*", r"<i>\1</i>", str(piece))) for piece in shown]
+    shown = [Markup(re.sub(r"\*(\w+)\*", r"<em>\1</em>", str(piece))) for piece in shown]
     code = [Markup(f"<code>{escape(piece)}</code>") for piece in pieces[1::2]]
     return Markup("").join(
         piece for pair in zip(shown, [*code, Markup("")], strict=True) for piece in pair

@@ -1,9 +1,9 @@
 """The report: one page that opens from disk.
 
 It needs no network and no other file: styles and figures are within it, equations are MathML. It
-links to the explorer and to the pages of the notebooks beside it. `render` makes the page of the
-paper's study and `render_study` that of a study of one's own, from their arguments; `write_report`
-reads the results of a run and writes either.
+links to the explorer and the pages of the notebooks beside it, and to the files of its figures.
+`render` makes the page of the paper's study and `render_study` that of a study of one's own, from
+their arguments; `write_report` reads the results of a run and writes either.
 """
 
 import base64
