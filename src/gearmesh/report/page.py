@@ -40,8 +40,6 @@ class Figure:
         Its id, its number and what it shows.
     picture : str
         The picture as the address of an image.
-    file : str
-        Address of the file of the picture, beside the page.
     notebook : str, optional
         Page of the notebook that draws it.
     view : str, optional
@@ -54,7 +52,6 @@ class Figure:
     title: str
     caption: str
     picture: str
-    file: str
     notebook: str | None = None
     view: str | None = None
     entries: tuple[Entry, ...] = ()
@@ -117,7 +114,6 @@ def _why(study: Study, places: Places) -> str:
             title,
             " ".join((paths.CAPTIONS / f"{name}.rst").read_text(encoding="utf-8").split()),
             embedded(places.figure_files(name)[1]),
-            _file(name, "svg"),
             f"notebooks/{paths.WHY}.html",
             views.FIGURES[name],
         )
@@ -209,10 +205,7 @@ def render_study(study: Study, resonance: xr.Dataset, pictures: Mapping[str, str
     template = environment().get_template("study.html.j2")
     return template.render(
         study=study,
-        figures=[
-            Figure(name, *STUDY_FIGURES[name], picture, _file(name, "png"))
-            for name, picture in pictures.items()
-        ],
+        figures=[Figure(name, *STUDY_FIGURES[name], picture) for name, picture in pictures.items()],
         parameters=description.parameters(study),
         variants=[_row(resonance.sel(variant=name)) for name in resonance["variant"].values],
         computation=list(description.computation(study, resonance)),
@@ -225,16 +218,10 @@ def _figure(name: str, caption: str, picture: str, entries: Iterable[Entry]) -> 
         title=f"Fig. {name.removeprefix('fig')}",
         caption=" ".join(caption.split()),
         picture=picture,
-        file=_file(name, "svg"),
         notebook=f"notebooks/{name}.html" if name in paths.NOTEBOOK_NAMES else None,
         view=views.FIGURES.get(name),
         entries=tuple(entry for entry in entries if entry.figure == name),
     )
-
-
-def _file(name: str, ending: str) -> str:
-    """Return where the file of a figure is, seen from the page."""
-    return f"../figures/{name}.{ending}"
 
 
 def _sensitivity(resonance: xr.Dataset) -> Iterable[tuple[str, int, int, float]]:
