@@ -121,6 +121,13 @@ def test_a_parameter_with_a_unit_is_followed(pair):
     )
 
 
+def test_lengths_follow_a_static_deflection_that_changes(pair):
+    orbit = gm.find_orbit(pair, "c-material", 0.9)
+    found = gm.follow(orbit, "static_deflection", ("10 um", "13 um")).to_dataset()
+    expected = (found.y_max_rel * found.static_deflection).values
+    np.testing.assert_allclose(found.y_max.values, expected, rtol=1e-12)
+
+
 EDGES = {
     "friction_coefficient": (0.0, 0.1),
     "stiffness_ratio": (0.5, 1.0),

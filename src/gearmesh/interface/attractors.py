@@ -164,7 +164,7 @@ def basins(
         "y": (("y",), heights, "initial relative motion y"),
         "v": (("v",), rates, "initial velocity dy/dtau_s"),
     }
-    dataset = dataset.assign_coords(with_lengths(axes, pair).variables)
+    dataset = dataset.assign_coords(with_lengths(axes, pair.static_deflection).variables)
     stated = {"units": "1", "long_name": "initial mesh phase"}
     dataset = dataset.assign_coords(phase=("phase", phases, stated))
     stated = {"units": "1", "long_name": "position of the attractor that is reached"}
@@ -206,7 +206,7 @@ def _described(found: Sequence[Attractor], pair: Pair, multipliers: int) -> xr.D
             ("strobe_v", "relative velocity dy/dtau_s at mesh phase 0"),
         )
     }
-    dataset = with_lengths(lengths, pair)
+    dataset = with_lengths(lengths, pair.static_deflection)
     for name, numbers, what in (
         (
             "periods",

@@ -14,7 +14,14 @@ from gearmesh.dynamics.periodic.shots import Shot
 from gearmesh.errors import InputError
 from gearmesh.interface.lengths import with_lengths
 from gearmesh.interface.orbits import Orbit
-from gearmesh.interface.parameters import Limits, declared, number_of, read_limits, with_number
+from gearmesh.interface.parameters import (
+    Limits,
+    declared,
+    number_of,
+    read_limits,
+    static_deflection,
+    with_number,
+)
 from gearmesh.interface.statements import read_whole
 from gearmesh.model.problem import Problem
 from gearmesh.study.reading.schema import shown
@@ -114,7 +121,7 @@ class Branch:
                 "y_max": (("point",), found.y_max, "maximum of y"),
                 "y_min": (("point",), found.y_min, "minimum of y"),
             },
-            pair,
+            static_deflection(pair, (self.parameter,), found.values[:, None]),
         )
         nu = np.array([orbit.problem.nu for orbit in found.orbits])
         for name, values, what in (
@@ -189,7 +196,8 @@ class SpecialCurve:
             name: (("point",), [getattr(orbit, name) for orbit in self.found.orbits], what)
             for name, what in (("y_max", "maximum of y"), ("y_min", "minimum of y"))
         }
-        dataset = with_lengths(heights, pair)
+        y_st = static_deflection(pair, self.found.parameters, self.found.values)
+        dataset = with_lengths(heights, y_st)
         for name, values in zip(self.found.parameters, self.found.values.T, strict=True):
             unit, what = declared(pair, name)
             dataset[name] = ("point", values, {"units": unit, "long_name": what})

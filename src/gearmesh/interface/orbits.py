@@ -167,7 +167,7 @@ class Orbit:
             "y_max": ((), self.found.y_max, "maximum of y"),
             "y_min": ((), self.found.y_min, "minimum of y"),
         }
-        dataset = with_lengths(lengths, self.pair)
+        dataset = with_lengths(lengths, self.pair.static_deflection)
         time = course.time / self.pair.natural_frequency
         dataset = dataset.assign_coords(time=("time", time, {"units": "s", "long_name": "time"}))
         flags = {

@@ -2,6 +2,8 @@
 
 from typing import Any
 
+import numpy as np
+
 from gearmesh.errors import InputError
 from gearmesh.interface.statements import bare, several
 from gearmesh.study.alternatives import DECLARED, NAMES
@@ -68,6 +70,34 @@ def with_number(pair: Pair, name: str, value: float) -> Pair:
     """Return a pair with another value of a parameter, in its unit."""
     unit, _ = declared(pair, name)
     return pair.replace(**{name: value if unit == "1" else f"{value!r} {unit}"})
+
+
+def static_deflection(pair: Pair, names: tuple[str, ...], values: np.ndarray) -> float | np.ndarray:
+    """Return y_st of a pair at several values of its parameters, in mm.
+
+    Parameters
+    ----------
+    pair : Pair
+    names : tuple of str
+        Parameters, or ``"nu"``, on which y_st does not depend.
+    values : ndarray, shape (n, len(names))
+
+    Returns
+    -------
+    float or ndarray, shape (n,)
+        One number if it is the same everywhere.
+    """
+
+    def at(row: np.ndarray) -> float:
+        changed = pair
+        for name, value in zip(names, row.tolist(), strict=True):
+            if name != "nu":
+                changed = with_number(changed, name, value)
+        return changed.static_deflection
+
+    if all(at(row) == pair.static_deflection for row in values[[0, -1]]):
+        return pair.static_deflection
+    return np.array([at(row) for row in values])
 
 
 def read_limits(pair: Pair, name: str, limits: object) -> tuple[float, float]:

@@ -104,7 +104,7 @@ def bands(pair: Pair, variants: Sequence[str]) -> xr.Dataset:
             "y_max": (axes, found[..., 0], "greatest maximum of y in the last revolution"),
             "y_min": (axes, found[..., 1], "least minimum of y in the last revolution"),
         },
-        pair,
+        pair.static_deflection,
     )
     stated = {"units": "1", "long_name": "spread of the maxima, in static deflections y_st"}
     dataset["spread_rel"] = (axes, found[..., 2], stated)

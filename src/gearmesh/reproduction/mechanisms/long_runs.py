@@ -70,7 +70,7 @@ def table(study: Study, runs: Mapping[str, Sequence["LongRun"]]) -> xr.Dataset:
             "y_max": (axes, extremes[..., 0], "maximum of y on the orbit"),
             "y_min": (axes, extremes[..., 1], "minimum of y on the orbit"),
         },
-        study.pair,
+        study.pair.static_deflection,
     )
     flags = {
         "flag_values": np.arange(len(KINDS), dtype=np.int8),

@@ -74,7 +74,7 @@ def basins(pair: Pair, branches: xr.Dataset, resolution: int) -> xr.Dataset:
             "y_max": (("nu", "y", "v"), high, "maximum of y in the last revolution"),
             "y_min": (("nu", "y", "v"), low, "minimum of y in the last revolution"),
         },
-        pair,
+        pair.static_deflection,
     )
     orbits = [resonant_orbit(branches, nu) for nu in BASINS_AT]
     top, bottom = (np.array(one).reshape(-1, 1, 1) for one in zip(*orbits, strict=True))
@@ -91,7 +91,7 @@ def basins(pair: Pair, branches: xr.Dataset, resolution: int) -> xr.Dataset:
         "y": (("y",), heights, "initial relative motion y"),
         "v": (("v",), rates, "initial velocity dy/dtau_s"),
     }
-    dataset = dataset.assign_coords(with_lengths(axes, pair).variables)
+    dataset = dataset.assign_coords(with_lengths(axes, pair.static_deflection).variables)
     dataset = dataset.assign_coords(nu=_frequencies(BASINS_AT))
     dataset.attrs = {"variant": VARIANT, "revolutions": REVOLUTIONS}
     return dataset
@@ -141,7 +141,9 @@ def phases(pair: Pair, resolution: int) -> xr.Dataset:
     shape = len(CHECKED_AFTER), 2, count, resolution
     high, loss = np.moveaxis(np.reshape(found, shape), 1, 0)
     axes = "revolutions", "nu", "phase"
-    dataset = with_lengths({"y_max": (axes, high, "maximum of y in the last revolution")}, pair)
+    dataset = with_lengths(
+        {"y_max": (axes, high, "maximum of y in the last revolution")}, pair.static_deflection
+    )
     stated = {"units": "1", "long_name": "share of contact loss in the last revolution"}
     dataset["contact_loss_fraction"] = (axes, loss, stated)
     stated = {"units": "1", "long_name": "share of the starting phases that have jumped"}

@@ -122,7 +122,7 @@ def _extremes(found: np.ndarray, axes: tuple[str, ...], pair: Pair) -> xr.Datase
             "y_max": (axes, found[..., 0], "maximum of y in the last revolution"),
             "y_min": (axes, found[..., 1], "minimum of y in the last revolution"),
         },
-        pair,
+        pair.static_deflection,
     )
 
 
