@@ -16,7 +16,7 @@ DEV_STAMP := .venv/.installed-dev
 DOCS_STAMP := .venv/.installed-docs
 BENCH_STAMP := .venv/.installed-bench
 STALE := $(shell sh .ci/stale_environment $(if $(filter file,$(origin PYTHON)),,$(PYTHON)))
-PIP := $(BIN)/python -I -m pip install --quiet --disable-pip-version-check
+PIP := $(BIN)/python -I -m pip install -qq --disable-pip-version-check
 # Nothing without a hash is ever installed, so the few packages that come as sources are built
 # with the setuptools of the lock instead of one that pip would fetch for the purpose.
 # The lock is complete, so pip need not resolve: it would also stumble over extras in hash mode.
