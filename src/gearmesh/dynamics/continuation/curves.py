@@ -9,7 +9,7 @@ arclength and not by a parameter.
 import contextlib
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
-from functools import cached_property
+from functools import cached_property, lru_cache
 
 import numpy as np
 
@@ -337,8 +337,13 @@ class Curve:
             else replace(problem, initial_phase=self.phase)
         )
 
+    @cached_property
+    def _problem_at(self) -> Callable[[tuple[float, ...]], Problem]:
+        """As `_problem`, but keeps some: differences in the state ask for the same one often."""
+        return lru_cache(maxsize=16)(self._problem)
+
     def _orbit(self, place: np.ndarray) -> Shot:
-        problem = self._problem(self._values(place))
+        problem = self._problem_at(self._values(place))
         return self.like.shot(problem, place[: -len(self.units)], self.periods)
 
     def _values(self, place: np.ndarray) -> tuple[float, ...]:

@@ -2,7 +2,6 @@
 
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import replace
-from functools import lru_cache
 from typing import NamedTuple
 
 import numpy as np
@@ -144,8 +143,6 @@ def _family(pair: Pair, wanted: Wanted) -> Callable[..., Problem]:
             return law[0] * times, law[1] * times, law[2] * times
         return law[0], law[1] / times, law[2] / times**2
 
-    # Differences in the state ask for the same problem again and again.
-    @lru_cache(maxsize=16)
     def problem(nu: float, times: float) -> Problem:
         material, lubricant = scaled(begun.material, times), scaled(begun.lubricant, times)
         return replace(begun, nu=nu, material=material, lubricant=lubricant)
