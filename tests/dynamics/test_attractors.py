@@ -8,15 +8,11 @@ import numpy as np
 import pytest
 from problems import of_paper, problem
 
-from gearmesh.dynamics.attraction.attractors import (
-    CHAOTIC,
-    NEUTRAL,
-    PERIODIC,
-    stable_orbits_near,
-)
+from gearmesh.dynamics.attraction.attractors import stable_orbits_near
 from gearmesh.dynamics.attraction.basins import basins, reached, wilson_interval
 from gearmesh.dynamics.attraction.envelopes import envelope_of
 from gearmesh.dynamics.attraction.growth import growth_rates
+from gearmesh.dynamics.attraction.kinds import CHAOTIC, NEUTRAL, PERIODIC
 from gearmesh.dynamics.attraction.lyapunov import lyapunov_spectrum
 from gearmesh.dynamics.attraction.maps import map_of
 from gearmesh.dynamics.attraction.regions import region_of

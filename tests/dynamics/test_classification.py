@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 from problems import of_paper, problem
 
-from gearmesh.dynamics.attraction.attractors import CHAOTIC, LOST, MOVING, NEUTRAL, PERIODIC
 from gearmesh.dynamics.attraction.classification import SETTLED, classify
 from gearmesh.dynamics.attraction.envelopes import envelope_of
+from gearmesh.dynamics.attraction.kinds import CHAOTIC, LOST, MOVING, NEUTRAL, PERIODIC
 from gearmesh.dynamics.periodic.orbits import find_orbit
 from gearmesh.dynamics.starts import initial_coordinates
 from gearmesh.solvers.reduced.derivatives.period_map import passage

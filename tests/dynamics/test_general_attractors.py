@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 from problems import problem
 
-from gearmesh.dynamics.attraction.attractors import NEUTRAL, PERIODIC
 from gearmesh.dynamics.attraction.basins import basins, reached
+from gearmesh.dynamics.attraction.kinds import NEUTRAL, PERIODIC
 from gearmesh.dynamics.attraction.lyapunov import lyapunov_spectrum
 from gearmesh.dynamics.attraction.maps import map_of
 from gearmesh.dynamics.periodic import general_search

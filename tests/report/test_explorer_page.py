@@ -12,6 +12,7 @@ from small_run import compute
 
 from gearmesh.data.datasets import open_dataset
 from gearmesh.data.paths import Places
+from gearmesh.dynamics.continuation.kinds import KINDS
 from gearmesh.report.explorer import numbers, page, views
 from gearmesh.study.loading import load_study
 
@@ -82,7 +83,7 @@ def test_orbits_are_those_of_the_study(datasets):
     found = numbers.orbits(branches, points, ["c-material", "d-both"])
     assert found["branch_variant"].tolist() == [0, 1]
     assert found["branch_stability"].tolist() == [1, -1]
-    assert found["special_kind"].tolist() == [numbers.KINDS.index("flip")]
+    assert found["special_kind"].tolist() == [KINDS.index("flip")]
     assert found["special_nu"].tolist() == [0.75]
 
 

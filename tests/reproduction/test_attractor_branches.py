@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 from orbits_in_tables import distance
 
-from gearmesh.dynamics.attraction.attractors import PERIODIC
 from gearmesh.dynamics.attraction.classification import classify
+from gearmesh.dynamics.attraction.kinds import PERIODIC
 from gearmesh.dynamics.periodic.orbits import correct
 from gearmesh.model.variants import variant
 from gearmesh.reproduction.mechanisms import tables

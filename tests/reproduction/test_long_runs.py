@@ -8,7 +8,7 @@ import pytest
 from gearmesh.data.datasets import open_dataset
 from gearmesh.dynamics.attraction.classification import classify
 from gearmesh.reproduction.mechanisms import files
-from gearmesh.reproduction.mechanisms.long_runs import KINDS, shares, table
+from gearmesh.reproduction.mechanisms.long_runs import FLAGS, shares, table
 from gearmesh.solvers.simulation import simulate
 
 VARIANTS = ("b-material", "b-both", "c-lubricant")
@@ -34,7 +34,7 @@ def found(few, tmp_path_factory):
 def test_each_case_has_its_kind_and_no_other_cell_has_one(found, few):
     kind = found["kind"]
     assert kind.attrs["flag_meanings"].split()[3] == "quasi_periodic"
-    assert kind.attrs["flag_values"].tolist() == list(range(len(KINDS)))
+    assert kind.attrs["flag_values"].tolist() == list(range(len(FLAGS)))
     for variant, nus in few.plan.frequencies():
         there = np.isin(found["nu"], nus)
         assert ((kind.sel(variant=variant.name) > 0) == there).all()
@@ -45,7 +45,7 @@ def test_each_case_has_its_kind_and_no_other_cell_has_one(found, few):
 
 
 def test_a_case_that_has_settled_repeats_the_extremes_of_its_orbit(found, few):
-    """Runs of 80 revolutions, of which the last 12 · 21 mesh periods are kept."""
+    """Each run lasts 80 revolutions and keeps the last 12, which are 252 mesh periods."""
     pair = few.pair.replace(revolutions=80, kept_revolutions=12)
     for variant, nus in few.plan.frequencies():
         own = found.sel(variant=variant.name, nu=list(nus[::20]))
@@ -70,7 +70,7 @@ def test_the_report_says_how_many_cases_settle_within_five_revolutions(found, fe
     assert lubricant.kinds["period 1"] == pytest.approx(59.8, abs=1.0)
     assert lubricant.kinds["longer"] == pytest.approx(10.4, abs=1.0)
     assert lubricant.kinds["moving"] == pytest.approx(29.9, abs=1.0)
-    moving = found["nu"].values[found["kind"].sel(variant="c-lubricant") == KINDS.index("moving")]
+    moving = found["nu"].values[found["kind"].sel(variant="c-lubricant") == FLAGS.index("moving")]
     assert ((moving < 0.8) | (moving > 1.1)).all()
     assert lubricant.in_time == pytest.approx(59.3, abs=1.0)
     assert lubricant.last > 1000

@@ -7,20 +7,10 @@ from functools import cached_property
 
 import numpy as np
 
+from gearmesh.dynamics.attraction.kinds import PERIODIC
 from gearmesh.dynamics.attraction.maps import PoincareMap
 from gearmesh.dynamics.periodic.shots import Shot
 from gearmesh.errors import NoOrbit
-
-PERIODIC, NEUTRAL, QUASI_PERIODIC, CHAOTIC, MOVING, LOST = (
-    "periodic",
-    "neutral",
-    "quasi-periodic",
-    "chaotic",
-    "moving",
-    "lost",
-)
-"""Kinds of attractors: an orbit; motion on which no damping acts any more; motion that fills a
-closed curve; chaos; a motion that still changes after the transient; a run that failed."""
 
 SAME = 1e-6
 """Distance, in y_st, of two numbers that are the same."""
@@ -38,8 +28,7 @@ class Attractor:
     Attributes
     ----------
     kind : str
-        ``"periodic"``, ``"neutral"``, ``"quasi-periodic"``, ``"chaotic"``, ``"moving"`` or
-        ``"lost"``.
+        One of `gearmesh.dynamics.attraction.kinds.KINDS`.
     orbit : Shot, optional
         The orbit of a periodic attractor.
     exponent : float

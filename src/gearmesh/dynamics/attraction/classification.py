@@ -9,16 +9,10 @@ from typing import NamedTuple
 
 import numpy as np
 
-from gearmesh.dynamics.attraction.attractors import (
-    LOST,
-    MOVING,
-    NEUTRAL,
-    PERIODIC,
-    SAME,
-    Attractor,
-)
+from gearmesh.dynamics.attraction.attractors import SAME, Attractor
 from gearmesh.dynamics.attraction.envelopes import RISE, Envelope, envelope_of
 from gearmesh.dynamics.attraction.irregular import irregular_kinds
+from gearmesh.dynamics.attraction.kinds import LOST, MOVING, NEUTRAL, PERIODIC
 from gearmesh.dynamics.attraction.maps import WEIGHTS, ReducedMap
 from gearmesh.dynamics.periodic.orbits import Orbit, correct, newton_correction
 from gearmesh.dynamics.starts import initial_coordinates

@@ -6,8 +6,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from gearmesh.dynamics.attraction.attractors import CHAOTIC, LOST, MOVING, NEUTRAL, QUASI_PERIODIC
 from gearmesh.dynamics.attraction.growth import LEAST_GROWTH, growth_rates
+from gearmesh.dynamics.attraction.kinds import CHAOTIC, LOST, MOVING, NEUTRAL, QUASI_PERIODIC
 from gearmesh.dynamics.attraction.maps import PoincareMap
 from gearmesh.model.problem import Problem
 from gearmesh.solvers.simulation import simulate

@@ -4,15 +4,10 @@ import math
 
 import numpy as np
 
-from gearmesh.dynamics.attraction.attractors import (
-    LOST,
-    NEUTRAL,
-    PERIODIC,
-    Attractor,
-    stable_orbits_near,
-)
+from gearmesh.dynamics.attraction.attractors import Attractor, stable_orbits_near
 from gearmesh.dynamics.attraction.envelopes import RISE, envelope_of
 from gearmesh.dynamics.attraction.irregular import irregular_kinds
+from gearmesh.dynamics.attraction.kinds import LOST, NEUTRAL, PERIODIC
 from gearmesh.dynamics.attraction.maps import PoincareMap
 from gearmesh.dynamics.attraction.regions import Region, region_of
 from gearmesh.dynamics.periodic.shots import Shot

@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-KINDS = (*("fold", "flip", "torus", "branch_point", "grazing_front", "grazing_back", "switching"),)
-"""Kinds of special points; their places in this list stand for them."""
+from gearmesh.dynamics.continuation.kinds import KINDS
+
 MOST_PERIODS = 2
 """The longest orbits, in mesh periods, whose special points the diagram marks."""
 

@@ -10,6 +10,7 @@ import xarray as xr
 from gearmesh.data.datasets import open_dataset
 from gearmesh.data.paths import Places
 from gearmesh.data.writing import write_text
+from gearmesh.dynamics.continuation.kinds import KINDS
 from gearmesh.model.variants import variant
 from gearmesh.report.explorer import controls, numbers, views
 from gearmesh.report.presentation import environment
@@ -81,7 +82,7 @@ def render(
         "pair": controls.of_one_wheel(pair),
         "variants": names,
         "statuses": list(STATUSES),
-        "kinds": list(numbers.KINDS),
+        "kinds": list(KINDS),
         "arrays": packed.index,
     }
     return (

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 import xarray as xr
 
+from gearmesh.dynamics.attraction.kinds import KINDS
 from gearmesh.interface.lengths import with_lengths
 from gearmesh.model.variants import variant as read_variant
 from gearmesh.study.cases import Study
@@ -14,17 +15,8 @@ from gearmesh.study.cases import Study
 if TYPE_CHECKING:  # code that only reads results imports this module, too, and needs no solver
     from gearmesh.dynamics.attraction.classification import LongRun
 
-KINDS = (
-    "not_computed",
-    "periodic",
-    "neutral",
-    "quasi-periodic",
-    "chaotic",
-    "moving",
-    "lost",
-)
-"""Values of the flag `kind`: a cell without a case, then the kinds of
-`gearmesh.dynamics.attraction.attractors`."""
+FLAGS = ("not_computed", *KINDS)
+"""Values of the flag `kind`: that of a cell without a case comes first."""
 
 _ABSENT = -1  # of whole numbers
 
@@ -42,7 +34,7 @@ def table(study: Study, runs: Mapping[str, Sequence["LongRun"]]) -> xr.Dataset:
     Returns
     -------
     xarray.Dataset
-        `kind`, one of `KINDS`; of the orbit on which a case ends, or which it still approaches, the
+        `kind`, one of `FLAGS`; of the orbit on which a case ends, or which it still approaches, the
         least period (`periods`, 0 without an orbit) and the extremes `y_max` and `y_min` (mm, and
         ``_rel`` in static deflections, not-a-number without an orbit); and `settling_periods`, the
         mesh periods until the case has settled, missing if it does not. The attributes state how
@@ -60,7 +52,7 @@ def table(study: Study, runs: Mapping[str, Sequence["LongRun"]]) -> xr.Dataset:
         places = np.searchsorted(nu, nus).tolist()
         for place, run in zip(places, runs[variant.name], strict=True):
             cell, orbit = (row, place), run.orbit
-            kind[cell] = KINDS.index(run.attractor.kind)
+            kind[cell] = FLAGS.index(run.attractor.kind)
             periods[cell] = orbit.periods if orbit else 0
             extremes[cell] = (orbit.y_max, orbit.y_min) if orbit else np.nan
             settling[cell] = _ABSENT if run.settled is None else run.settled
@@ -73,8 +65,8 @@ def table(study: Study, runs: Mapping[str, Sequence["LongRun"]]) -> xr.Dataset:
         study.pair.static_deflection,
     )
     flags = {
-        "flag_values": np.arange(len(KINDS), dtype=np.int8),
-        "flag_meanings": " ".join(KINDS).replace("-", "_"),
+        "flag_values": np.arange(len(FLAGS), dtype=np.int8),
+        "flag_meanings": " ".join(FLAGS).replace("-", "_"),
     }
     absent = {"units": "1", "_FillValue": np.int32(_ABSENT)}
     columns: dict[str, tuple[np.ndarray, str, dict[str, Any]]] = {
@@ -106,7 +98,7 @@ class Share(NamedTuple):
     symbol : str
         Where the damping acts.
     kinds : dict
-        Share of the cases, in %: `KINDS`, and ``period 1`` and ``longer`` for the orbits of one and
+        Share of the cases, in %: `FLAGS`, and ``period 1`` and ``longer`` for the orbits of one and
         of several mesh periods.
     in_time : float
         Share of the cases, in %, that settle within the revolutions of the study.
@@ -145,12 +137,12 @@ def shares(attractors: xr.Dataset, run: int) -> list[Share]:
 
 def _share(cases: xr.Dataset, symbol: str, label: str, run: int) -> Share:
     kind = cases["kind"].values
-    there = kind != KINDS.index("not_computed")
+    there = kind != FLAGS.index("not_computed")
     columns = (cases[name].values[there] for name in ("kind", "periods", "settling_periods"))
     kind, periods, settling = columns
-    periodic = kind == KINDS.index("periodic")
+    periodic = kind == FLAGS.index("periodic")
     members = {
-        **{name: kind == value for value, name in enumerate(KINDS)},
+        **{name: kind == value for value, name in enumerate(FLAGS)},
         "period 1": periodic & (periods == 1),
         "longer": periodic & (periods > 1),
     }
