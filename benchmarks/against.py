@@ -236,7 +236,7 @@ def _tests(folder: Path) -> float:
 
 
 def _busy() -> float:
-    """Return the seconds that the processors of this machine have worked, for whatever process.
+    """Return the processor time of all processes on this machine since it started, in seconds.
 
     Servers of the tests and browsers start processes that nobody waits for, so the time of the
     children leaves them out.

@@ -1,4 +1,4 @@
-"""Python's search for garbage, in processes that end soon."""
+"""Settings of Python's garbage collector for short processes."""
 
 import atexit
 import gc
@@ -7,10 +7,11 @@ _NEW_OBJECTS = 100_000
 
 
 def search_rarely() -> None:
-    """Let this process search for garbage rarely, and not at its end.
+    """Let this process search for garbage rarely, and not when it ends.
 
-    Imports and compilation make objects that stay. Python would search them again and again, and
-    twice when the process ends: up to a third of the time of a short one.
+    Imports and compilation make many objects that stay. By default Python would search all of them
+    again and again, and twice more when the process ends. In a short process these searches take
+    up to a third of the time.
     """
     gc.set_threshold(_NEW_OBJECTS)
     atexit.register(gc.freeze)

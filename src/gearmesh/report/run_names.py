@@ -1,4 +1,4 @@
-"""How runs are called in pictures and tables: by what tells them apart."""
+"""Names of runs in legends and tables, which state the parameters that differ between two runs."""
 
 import json
 from collections.abc import Sequence
@@ -22,7 +22,7 @@ def differing(first: xr.Dataset, second: xr.Dataset) -> dict[str, tuple[Any, Any
 
 
 def suffixes(runs: Sequence[xr.Dataset]) -> list[str]:
-    """Return for each run what to append to its variant and its frequency in a legend.
+    """Return the text that follows the variant and the frequency of each run in a legend.
 
     It is empty for a single run. Of two runs it names the parameters in which they differ.
     """

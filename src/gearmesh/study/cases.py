@@ -243,9 +243,9 @@ class Study:
         return list(self._cases(part for part in plan if part[0].letter == letter))
 
     def check_samples(self) -> None:
-        """Raise InputError if a job, which holds a letter, keeps more samples than memory should.
+        """Raise InputError if the cases of a letter, which are one job, keep too many samples.
 
-        It holds the time courses, and in a sweep those of all runs with loads.
+        A job keeps the samples of time courses; a sweep with loads keeps those of all its runs.
         """
         swept = self.plan.loads and self.plan.direction is not None
         for letter in self.letters:

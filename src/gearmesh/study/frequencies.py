@@ -29,7 +29,7 @@ def _decimal(nu: float) -> Decimal:
 
 
 def grid(start: float, stop: float, step: float) -> list[float]:
-    """Return start, start + step, … up to stop, as one would write them: the sums are decimal.
+    """Return start, start + step, … up to stop, without binary rounding: the sums are decimal.
 
     Raises
     ------

@@ -31,10 +31,10 @@ MOST_HARMONICS = 100
 
 
 MOST_SAMPLES = 10_000_000
-"""Samples that a run may keep. A time course needs about 440 bytes of memory for each: 4.4 GB."""
+"""Most samples that a run may keep. Each takes some 440 bytes of memory, so together 4.4 GB."""
 
 MOST_SWEPT_SAMPLES = 3 * MOST_SAMPLES
-"""Samples that the runs of a sweep may keep together, which needs 210 bytes for each: 6.4 GB."""
+"""Most samples that all runs of a sweep may keep. Each takes some 210 bytes, so together 6.4 GB."""
 
 
 class Parameters(Section):

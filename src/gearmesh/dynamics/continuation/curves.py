@@ -160,7 +160,7 @@ class Curve:
                 )
             except np.linalg.LinAlgError as error:
                 raise NoOrbit("the curve is singular here") from error
-            # Where the plane holds a parameter fixed, this is exact.
+            # Rounding must not move a parameter that the plane holds fixed.
             place = np.where(normal == 1.0, origin, place - correction)
             orbit = self._orbit(place)
         if not best < LARGEST_RESIDUAL:
@@ -339,7 +339,7 @@ class Curve:
 
     @cached_property
     def _problem_at(self) -> Callable[[tuple[float, ...]], Problem]:
-        """As `_problem`, but keeps some: differences in the state ask for the same one often."""
+        """`_problem` with a memory: differences in the state need the same problem often."""
         return lru_cache(maxsize=16)(self._problem)
 
     def _orbit(self, place: np.ndarray) -> Shot:
@@ -347,7 +347,7 @@ class Curve:
         return self.like.shot(problem, place[: -len(self.units)], self.periods)
 
     def _values(self, place: np.ndarray) -> tuple[float, ...]:
-        # Rounded, so that a limit comes out as it was stated.
+        # Rounding to 15 digits restores a limit as it was stated.
         return tuple(float(f"{value:.15g}") for value in place[-len(self.units) :] * self.units)
 
     def _defect(self, orbit: Shot) -> np.ndarray:

@@ -18,11 +18,6 @@ from gearmesh.dynamics.periodic.shots import Shot
 from gearmesh.errors import NoOrbit
 from gearmesh.solvers.reduced.derivatives.variational import AFTER, BEFORE, VELOCITY
 
-BIFURCATIONS = ("fold", "branch_point", "flip", "torus")
-GRAZINGS = ("grazing_front", "grazing_back")
-KINDS = (*BIFURCATIONS, *GRAZINGS, "switching")
-"""All kinds of special points."""
-
 Test = tuple[str, Callable[[Point], float]]
 """A kind, and a function of the points of a branch that passes 0 at a special point."""
 
@@ -55,7 +50,7 @@ class SpecialPoint:
     Attributes
     ----------
     kind : str
-        One of `KINDS`.
+        One of `gearmesh.dynamics.continuation.kinds.KINDS`.
     nu : float
         Mesh frequency nu_s.
     parameters : dict
@@ -184,7 +179,9 @@ def _locate(curve: Curve, left: Point, right: Point, test: Callable[[Point], flo
 
 
 def _approach(curve: Curve, left: Point, right: Point, test: Callable[[Point], float]) -> Point:
-    """Return the point between two others where a height passes 0, from the side where it is > 0.
+    """Return the point between two others where a height falls to 0.
+
+    It is approached from the side where the height is positive.
 
     Flanks with a moving gap touch at a rate y' that is not 0. If the damping jumps there, the
     motion behind the grazing changes with the square root of the depth, and Newton's method may
@@ -246,12 +243,12 @@ def _has_pair_on_the_unit_circle(orbit: Shot) -> bool:
 
 
 def _is_off_the_circle(orbit: Shot) -> bool:
-    """Return whether no product of two multipliers is 1 within their error, as at a grazing."""
+    """Return whether every product of two multipliers differs from 1 by more than their error."""
     return _nearest_to_the_circle(orbit)[0] > orbit.multiplier_error
 
 
 def _nearest_to_the_circle(orbit: Shot) -> tuple[float, complex]:
-    """Return the least |mu_i mu_k - 1|, and mu_i."""
+    """Return the least |mu_i mu_k - 1| of all pairs of multipliers, and mu_i of that pair."""
     products = [(float(abs(a * b - 1.0)), a) for a, b in combinations(orbit.multipliers, 2)]
     return min(products, key=operator.itemgetter(0))
 
@@ -297,7 +294,7 @@ def torus_test(orbit: Shot) -> float:
 
 
 def product_of_pairs(matrices: np.ndarray) -> np.ndarray:
-    """Return the product of all mu_i mu_k - 1, i < k, of the eigenvalues mu of each matrix.
+    """Return, for each matrix, the product of mu_i mu_k - 1 over all pairs of eigenvalues mu.
 
     The products mu_i mu_k are the eigenvalues of the second compound matrix, of the minors of
     order two.

@@ -1,6 +1,7 @@
-"""Pieces of a branch in which special points may lie, found from all its points at once.
+"""The search for pieces of a branch that may hold special points.
 
-A few array operations on the test functions of all points show where a closer look is needed.
+The test functions are computed for all points at once. A few array operations then show which
+pieces need a closer look.
 """
 
 from typing import NamedTuple
@@ -8,11 +9,10 @@ from typing import NamedTuple
 import numpy as np
 
 from gearmesh.dynamics.continuation.curves import Point
+from gearmesh.dynamics.continuation.kinds import BIFURCATIONS, GRAZINGS
 from gearmesh.dynamics.continuation.special_points import (
     BACK,
-    BIFURCATIONS,
     FRONT,
-    GRAZINGS,
     bifurcation_tests,
     product_of_pairs,
 )
@@ -37,7 +37,7 @@ _MARGIN = 0.25
 
 
 def suspects(points: list[Point]) -> list[tuple[int, set[str]]]:
-    """Return every i for which a special point may lie between point i and the next one.
+    """Return every i such that a special point may lie between points i and i + 1.
 
     A piece of the branch is suspect if a test function changes sign in it. It is also suspect if a
     test function may cross 0 twice in it, that is, if its value at an end is less than `_MARGIN`
@@ -87,7 +87,7 @@ class _Events(NamedTuple):
 
 
 def _of_shots(orbits: list[Shot]) -> _Events:
-    """Return the functions of any orbits."""
+    """Return the event functions of orbits from either solver."""
     both = [[extrema(orbit)[:, 1] for orbit in orbits] for extrema in (FRONT, BACK)]
     jumps = [orbit.stiffness_jumps for orbit in orbits]
     fewest = min(map(len, jumps))
@@ -101,7 +101,7 @@ def _of_shots(orbits: list[Shot]) -> _Events:
 
 
 def _of_events(problem: Problem, found: list[tuple[np.ndarray, np.ndarray]]) -> _Events:
-    """Return the functions of what compiled code found."""
+    """Return the event functions of points that compiled code found."""
     stiffness = segments_of(problem)[:, 1]
     events = np.concatenate([one for _, one in found])
     first = np.cumsum([0, *(len(one) for _, one in found[:-1])])
@@ -126,7 +126,7 @@ def _counting(velocities: np.ndarray, turning: np.ndarray) -> np.ndarray:
 
 
 def _of_rows(points: list[Point], rows: np.ndarray) -> list[np.ndarray]:
-    """Return the functions of `bifurcation_tests`, each at all points that compiled code found."""
+    """Return the values of `bifurcation_tests` at points that compiled code found."""
     extended = rows[:, JACOBIAN:TANGENT].reshape(-1, SIZE, DEVIATIONS)
     jacobians = np.ascontiguousarray(extended[:, :, :SIZE])
     return [

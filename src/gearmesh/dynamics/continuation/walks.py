@@ -76,7 +76,7 @@ def walk(curve: Curve, start: Point, limits: Limits, longest: float) -> tuple[Wa
 
 
 def check_inside(name: str, value: float, low: float, high: float) -> None:
-    """Raise `NoOrbit` if a parameter is outside its range where a curve begins."""
+    """Raise `NoOrbit` if a curve would begin outside the range of a parameter."""
     if not low <= value <= high:
         raise NoOrbit(f"{name} = {value:.6g} of the orbit is outside {low:.6g} to {high:.6g}")
 

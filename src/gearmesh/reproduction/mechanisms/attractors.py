@@ -141,7 +141,7 @@ def further(known: Iterable[Branch], ends: Iterable[Orbit], limits: Range) -> It
 
 
 def _followed(orbit: Orbit, limits: Range) -> Branch | None:
-    """Follow an orbit from the first of its mesh periods from which that succeeds.
+    """Follow an orbit; if that fails from one of its mesh periods, begin at the next one.
 
     Rounding decides whether every special point can be located, so another state may succeed.
     """

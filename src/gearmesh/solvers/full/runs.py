@@ -44,10 +44,11 @@ _MOST_TURNS = 10_000
 
 
 def _build_runs(key: str, cache: bool) -> Callable[..., int]:
-    """Return the function that integrates runs, and returns the number of the first not over.
+    """Return the compiled function that integrates several runs, one after the other.
 
-    It begins with the run of number `first`. Its other arguments are those of `kernel.run`: what
-    all runs share, and arrays with a row for each run.
+    It begins with run number `first` and returns the number of the first run that is not finished.
+    Its other arguments are those of `kernel.run`: those that all runs share, and arrays with a row
+    for each run.
     """
 
     @njit(cache=cache, nogil=True)
@@ -248,7 +249,7 @@ class Runs:
         self.samples = np.zeros((m, samples_per_period * self.problem.kept_periods), SAMPLE)
 
     def _go_on(self, first: int, samples_per_period: int, most_turns: int) -> int:
-        """Continue the runs by some steps, and return how many are over."""
+        """Continue the runs by some steps, and return how many of them are finished."""
         runs = self.states, self.modes, self.strobes, self.extrema, self.samples, self.summaries
         over = _compiled_runs(
             self._stated, runs, first, samples_per_period, most_turns, self._series

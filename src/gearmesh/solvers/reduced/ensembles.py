@@ -29,7 +29,7 @@ _NO_SAMPLES = np.empty((0, SAMPLED, WIDEST))
 
 
 def laws_of(problems: Sequence[Problem], tolerance: float = TOLERANCE) -> np.ndarray:
-    """Return the laws of reducible problems as `advance` takes them, an array of `RUN`.
+    """Return the laws of reducible problems as an array of `RUN`, for `advance` and `measure`.
 
     Raises
     ------
@@ -83,7 +83,7 @@ def trace(
 def measure(
     laws: np.ndarray, states: np.ndarray, periods: int | np.ndarray, kept: int = 0
 ) -> np.ndarray:
-    """Return what is measured on the last mesh periods of runs, and their ends.
+    """Return the measurements on the last mesh periods of runs, and the states at their ends.
 
     Parameters
     ----------
