@@ -1,6 +1,5 @@
 """Branches of orbits and curves of special points, with units."""
 
-from collections.abc import Callable
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any
@@ -262,8 +261,11 @@ def _at_value(orbit: Orbit, name: str, value: float, found: Shot) -> Orbit:
     return Orbit(pair, orbit.variant, found.problem.nu, found)
 
 
-def _family(orbit: Orbit, names: tuple[str, ...]) -> tuple[Family, tuple[float, ...]]:
-    """Return the problems over some parameters, and the values of these at an orbit."""
+def _family(orbit: Orbit, names: tuple[str, ...]) -> tuple[Family | None, tuple[float, ...]]:
+    """Return the problems over some parameters, and the values of these at an orbit.
+
+    Of nu alone the problems are not stated: no parameter of the pair need be read again.
+    """
     for name in names:
         declared(orbit.pair, name)
     values = tuple(orbit.nu if name == "nu" else number_of(orbit.pair, name) for name in names)
@@ -277,7 +279,4 @@ def _family(orbit: Orbit, names: tuple[str, ...]) -> tuple[Family, tuple[float, 
                 pair = with_number(pair, name, value)
         return pair.problem(orbit.variant, nu)
 
-    if names == ("nu",):  # no parameter of the pair changes, so it need not be read again
-        return branches.field_family(orbit.found.problem, "nu"), values
-    made: Callable[..., Problem] = problem
-    return made, values
+    return (None if names == ("nu",) else problem), values

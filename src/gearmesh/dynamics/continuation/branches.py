@@ -6,7 +6,8 @@ from functools import cached_property, partial
 
 import numpy as np
 
-from gearmesh.dynamics.continuation.curves import Curve, Family, Point
+from gearmesh.dynamics.continuation.curves import Curve, Family
+from gearmesh.dynamics.continuation.points import Point
 from gearmesh.dynamics.continuation.special_points import SpecialPoint, special_points
 from gearmesh.dynamics.continuation.suspects import suspects
 from gearmesh.dynamics.continuation.walks import (
@@ -34,22 +35,36 @@ class Branch:
     ----------
     parameter : str
         Name of the parameter.
-    points : list of Point
-        The branch, point by point, in the order in which it is passed.
+    pieces : list of Piece
+        The branch, piece by piece, in the order in which it is passed.
     phase : float
         Mesh phase at which the states of `orbits` are taken.
-    special : list of SpecialPoint
-        Special points in their order along the branch.
+    located : list of (str, Point)
+        Kinds and places of the special points, in their order along the branch.
     ends : tuple of two str
         Why the branch ends at its first and at its last point: `LIMIT`, `CLOSED`, `HALVED`, `FAR`,
         or the reason why the corrector failed.
     """
 
     parameter: str
-    points: list[Point]
+    pieces: list[Piece]
     phase: float
-    special: list[SpecialPoint]
+    located: list[tuple[str, Point]]
     ends: tuple[str, str]
+
+    @cached_property
+    def points(self) -> list[Point]:
+        """The branch, point by point."""
+        return points_of(self.pieces)
+
+    @cached_property
+    def special(self) -> list[SpecialPoint]:
+        """Special points in their order along the branch."""
+        return [
+            SpecialPoint(kind, orbit.problem.nu, {self.parameter: point.values[0]}, orbit)
+            for kind, point in self.located
+            for orbit in (point.orbit.at_phase(self.phase),)
+        ]
 
     @cached_property
     def values(self) -> np.ndarray:
@@ -64,12 +79,12 @@ class Branch:
     @cached_property
     def y_max(self) -> np.ndarray:
         """Greatest y of each orbit."""
-        return np.array([point.orbit.y_max for point in self.points])
+        return np.array([point.motion.y_max for point in self.points])
 
     @cached_property
     def y_min(self) -> np.ndarray:
         """Least y of each orbit."""
-        return np.array([point.orbit.y_min for point in self.points])
+        return np.array([point.motion.y_min for point in self.points])
 
     @property
     def stable(self) -> np.ndarray:
@@ -108,7 +123,7 @@ def follow(
     limits : tuple of float
         Range of the parameter.
     family : callable, optional
-        The problem at a value of the parameter, if it is not a field of `Problem`.
+        The problem at a value of the parameter, if this is not a field of `Problem`.
     value : float, optional
         The parameter at `orbit`, if it is not a field of `Problem`.
     longest_step : float
@@ -119,6 +134,7 @@ def follow(
     NoOrbit
         If the orbit is not on a branch of the family.
     """
+    stretches = family is None and parameter == "nu"
     family = family or field_family(orbit.problem, parameter)
     value = float(getattr(orbit.problem, parameter)) if value is None else value
     low, high = limits
@@ -131,23 +147,19 @@ def follow(
         (high - low,),
         moved.problem.initial_phase,
         moved,
-        stretches=_stretches(family, value),
+        stretches=stretches,
     )
     start = curve.at(moved, (value,))
     walks = walk(curve, start, (limits,), longest_step)
     # Near a branching the slope may be rounding, so the ends tell where the branch begins.
     back, ahead = sorted(walks, key=lambda one: one.pieces[-1].points[-1].values)
     pieces = joined(back, ahead)
-    special = [
-        SpecialPoint(kind, found.problem.nu, {parameter: point.values[0]}, found)
-        for kind, point in [*back.flip[: back is not ahead], *_special(pieces), *ahead.flip]
-        for found in (point.orbit.at_phase(phase),)
-    ]
+    located = [*back.flip[: back is not ahead], *_special(pieces), *ahead.flip]
     return Branch(
         parameter,
-        points_of(pieces),
+        pieces,
         phase,
-        _each_once(special) if back is ahead else special,
+        _each_once(located) if back is ahead else located,
         (back.reason, ahead.reason),
     )
 
@@ -158,34 +170,26 @@ def field_family(problem: Problem, *names: str) -> Family:
     return lambda *values: changed(**dict(zip(names, values, strict=True)))
 
 
-def _stretches(family: Family, value: float) -> bool:
-    """Return whether the only parameter of a family is nu."""
-    here = family(value)
-    return here.nu == value and family(1.001 * value) == replace(here, nu=1.001 * value)
-
-
 def _special(pieces: list[Piece]) -> list[tuple[str, Point]]:
     return [
         found
         for piece in pieces
         for i, kinds in suspects(piece.points)
-        for found in special_points(piece.curve, piece.points[i], piece.points[i + 1], kinds)
+        for found in special_points(piece.curve, piece.points, i, kinds)
     ]
 
 
-def _each_once(special: list[SpecialPoint]) -> list[SpecialPoint]:
+def _each_once(special: list[tuple[str, Point]]) -> list[tuple[str, Point]]:
     """Leave out the special points that a closed branch passes again behind its first point."""
-    kept: list[SpecialPoint] = []
-    for point in special:
-        (value,) = point.parameters.values()
+    kept: list[tuple[str, Point]] = []
+    for kind, point in special:
         again = any(
-            one.kind == point.kind
-            and abs(value - other) < _SAME_VALUE
-            and abs(one.orbit.y_max - point.orbit.y_max) < _SAME_HEIGHT
-            for one in kept
-            for other in one.parameters.values()
+            kind == other
+            and abs(point.values[0] - known.values[0]) < _SAME_VALUE
+            and abs(point.motion.y_max - known.motion.y_max) < _SAME_HEIGHT
+            for other, known in kept
         )
-        kept += [] if again else [point]
+        kept += [] if again else [(kind, point)]
     return kept
 
 
@@ -197,7 +201,7 @@ def double_period(point: SpecialPoint, family: Family | None = None) -> tuple[Sh
     point : SpecialPoint
         Of kind ``"flip"``.
     family : callable, optional
-        The problem at a value of the parameter, if it is not a field of `Problem`.
+        The problem at a value of the parameter, if this is not a field of `Problem`.
 
     Raises
     ------
@@ -205,10 +209,11 @@ def double_period(point: SpecialPoint, family: Family | None = None) -> tuple[Sh
         If the corrector does not converge.
     """
     ((parameter, value),) = point.parameters.items()
+    stretches = family is None and parameter == "nu"
     family = family or field_family(point.orbit.problem, parameter)
     single = point.orbit.at_phase(clear_phase(point.orbit))
-    phase, stretched = single.problem.initial_phase, _stretches(family, value)
-    curve = Curve(family, 2 * single.periods, (1.0,), phase, single, stretches=stretched)
+    phase = single.problem.initial_phase
+    curve = Curve(family, 2 * single.periods, (1.0,), phase, single, stretches=stretches)
     across = np.linalg.svd(single.monodromy + np.eye(len(single.monodromy)))[2][-1]
     normal = np.append(across, 0.0)
     place = np.append(single.state, value) + _AMPLITUDE * normal

@@ -7,80 +7,26 @@ arclength and not by a parameter.
 """
 
 import contextlib
-from collections.abc import Callable
-from dataclasses import dataclass, field, replace
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
 from functools import cached_property, lru_cache
 
 import numpy as np
 
+from gearmesh.dynamics.continuation.points import Point
+from gearmesh.dynamics.continuation.tracing import MOST_CORRECTIONS, Tracer
 from gearmesh.dynamics.periodic.orbits import Orbit
 from gearmesh.dynamics.periodic.shots import Shot
 from gearmesh.errors import InputError, NoOrbit
 from gearmesh.model.problem import Problem
 from gearmesh.solvers.reduced.derivatives import curves
 from gearmesh.solvers.reduced.derivatives.curves import LARGEST_RESIDUAL, ROUNDED
-from gearmesh.solvers.reduced.derivatives.deviations import SIZE
-from gearmesh.solvers.reduced.derivatives.period_map import (
-    STATUSES,
-    Statement,
-    passage_of,
-    statement,
-    trace,
-)
-from gearmesh.solvers.reduced.derivatives.variational import COMPLETE
 
 Family = Callable[..., Problem]
 """The problem at the values of the parameters."""
 
-_MOST_CORRECTIONS = 12
 _CONTRACTION = 0.01  # of the defect: gradients that reduce it so far are used again
 _DIFFERENCE = 1e-5
-_MOST_STEPS = 64  # in one call of the compiled code
-
-
-@dataclass(frozen=True, eq=False)
-class Point:
-    """A point of a curve of orbits.
-
-    Attributes
-    ----------
-    place : ndarray, shape (k + m,)
-        The k numbers of the state, and the m parameters in units of the curve.
-    values : tuple of float
-        The parameters.
-    tangent : ndarray, shape (k + m,)
-        Unit tangent of the curve.
-    determinant : float
-        Determinant of the Jacobian of P^n(x) - x (and of the condition) in state and parameters,
-        bordered by the tangent.
-    made : callable
-        Returns the orbit.
-    found : tuple of two ndarray, optional
-        The row of `gearmesh.solvers.reduced.derivatives.curves` and the events of the motion over
-        the period, if compiled code found it.
-    """
-
-    place: np.ndarray
-    values: tuple[float, ...]
-    tangent: np.ndarray
-    determinant: float
-    made: Callable[[], Shot] = field(repr=False)
-    found: tuple[np.ndarray, np.ndarray] | None = field(default=None, repr=False)
-
-    @cached_property
-    def orbit(self) -> Shot:
-        """The orbit."""
-        return self.made()
-
-    @property
-    def slope(self) -> float:
-        """Change of the first parameter along the tangent, in units of the curve."""
-        return float(self.tangent[-len(self.values)])
-
-    def reversed(self) -> "Point":
-        """Return the same point, seen in the other direction along the curve."""
-        back = -self.tangent, -self.determinant
-        return Point(self.place, self.values, *back, self.made, self.found)
 
 
 @dataclass(frozen=True)
@@ -116,12 +62,17 @@ class Curve:
     stretches: bool = False
 
     @cached_property
-    def _compiled(self) -> tuple[Problem, Statement] | None:
-        """A problem, and how compiled code takes it, if the others differ from it in nu alone."""
+    def tracer(self) -> Tracer | None:
+        """Compiled code that finds the points, if the problems differ in nu alone."""
         if self.condition is not None or not self.stretches or not isinstance(self.like, Orbit):
             return None
-        problem = replace(self._problem((self.like.problem.nu,)), initial_state=None)
-        return problem, statement(problem, self.periods)
+        problem = self._problem((self.like.problem.nu,))
+        return Tracer(replace(problem, initial_state=None), self.periods, self.units[0])
+
+    @property
+    def gap_moves(self) -> bool:
+        """Whether the backlash changes with time."""
+        return self.like.problem.terms.backlash_varies
 
     def point(self, place: np.ndarray, normal: np.ndarray, along: np.ndarray) -> Point:
         """Return the point of the curve in the plane through `place` with the given normal.
@@ -137,13 +88,12 @@ class Curve:
         NoOrbit
             If Newton's method does not converge.
         """
-        if self._compiled is not None:
-            point = self._traced(self._compiled, place, normal, _MOST_CORRECTIONS)
-            return point if point.tangent @ along > 0.0 else point.reversed()
+        if self.tracer is not None:
+            return self.tracer.point(place, normal, along)
         origin, best = place, np.inf
         orbit = self._orbit(place)
         gradients = self._gradients(place, orbit, rough=True)
-        for _ in range(_MOST_CORRECTIONS):
+        for _ in range(MOST_CORRECTIONS):
             defect = self._defect(orbit)
             size = float(np.abs(defect).max())
             if not size < best:
@@ -169,48 +119,10 @@ class Curve:
 
     def beside(self, point: Point, length: float) -> Point:
         """Return the point at a small distance along the tangent, where the curve still is."""
+        if self.tracer is not None:
+            return self.tracer.beside(point, length)
         place = point.place + length * point.tangent
-        if self._compiled is not None:
-            return self._traced(self._compiled, place, point.tangent, 0)
         return self._with_tangent(place, self._orbit(place), point.tangent)
-
-    def _traced(
-        self,
-        compiled: tuple[Problem, Statement],
-        place: np.ndarray,
-        normal: np.ndarray,
-        corrections: int,
-    ) -> Point:
-        """Return the point that compiled code finds."""
-        points, events, _ = trace(compiled[1], place, normal, self.units[0], corrections)
-        row = points[0]
-        if row[curves.OUTCOME] != COMPLETE:
-            raise NoOrbit(f"the motion ends with {STATUSES[int(row[curves.OUTCOME])]}")
-        residual = np.abs(row[curves.END : curves.JACOBIAN] - row[:SIZE]).max()
-        if corrections and not residual < LARGEST_RESIDUAL:
-            raise NoOrbit(f"the corrector stops at a residual of {residual:.1e}")
-        return self._found(compiled, row, events[0])
-
-    def _found(
-        self, compiled: tuple[Problem, Statement], row: np.ndarray, events: np.ndarray
-    ) -> Point:
-        """Return a point of the compiled code."""
-        events = events[: int(row[curves.N_EVENTS])]
-        nu = float(row[SIZE]) * self.units[0]
-
-        def made() -> Orbit:
-            problem, stated = compiled
-            moved = passage_of(stated, self.units[0], row, events)
-            return Orbit(replace(problem, nu=nu), self.periods, row[:SIZE], moved)
-
-        return Point(
-            row[: curves.DIMENSIONS],
-            (nu,),
-            row[curves.TANGENT : curves.DETERMINANT],
-            float(row[curves.DETERMINANT]),
-            made,
-            (row, events),
-        )
 
     def _with_tangent(self, place: np.ndarray, orbit: Shot, along: np.ndarray) -> Point:
         gradients = self._gradients(place, orbit)
@@ -218,7 +130,7 @@ class Curve:
         if tangent @ along < 0.0:
             tangent = -tangent
         determinant = float(np.linalg.det(np.vstack([gradients, tangent])))
-        return Point(place, self._values(place), tangent, determinant, lambda: orbit)
+        return Point(place, self._values(place), tangent, determinant, orbit, lambda: orbit)
 
     def at(self, orbit: Shot, values: tuple[float, ...]) -> Point:
         """Return the point near `orbit` at a value of the first parameter, or near several.
@@ -257,7 +169,7 @@ class Curve:
 
     def ahead(
         self, point: Point, length: float, longest: float, limits: tuple[tuple[float, float], ...]
-    ) -> tuple[list[Point], float]:
+    ) -> tuple[Sequence[Point], float]:
         """Return the next points after `point`, and the length of the step behind them.
 
         The first step is at most `length`, and shorter where the curve bends. Later ones grow. The
@@ -268,26 +180,15 @@ class Curve:
         NoOrbit
             If the curve cannot be followed further.
         """
-        compiled = self._compiled
-        if compiled is None:
-            following, length = self._step_on(point, length, limits)
-            size = max(following.orbit.y_max, -following.orbit.y_min)
-            grown = min(curves.GROWTH * length, longest * max(1.0, size / curves.LARGE))
-            return [following], grown
-        points, events, length = trace(
-            compiled[1],
-            point.place,
-            point.tangent,
-            self.units[0],
-            _MOST_CORRECTIONS,
-            _MOST_STEPS,
-            length,
-            longest,
-            limits[0],
-        )
-        if len(points) == 1:
-            raise NoOrbit("it bends too sharply")
-        return [self._found(compiled, points[i], events[i]) for i in range(1, len(points))], length
+        if self.tracer is not None:
+            return self.tracer.ahead(point, length, longest, limits[0])
+        following, length = self._step_on(point, length, limits)
+        grown = min(curves.GROWTH * length, longest * max(1.0, following.size / curves.LARGE))
+        return [following], grown
+
+    def track(self, point: Point) -> Sequence[Point]:
+        """Return a sequence of one point, to which others can be added."""
+        return [point] if self.tracer is None else self.tracer.track(point)
 
     def _step_on(
         self, point: Point, length: float, limits: tuple[tuple[float, float], ...]

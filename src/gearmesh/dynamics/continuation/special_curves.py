@@ -7,14 +7,14 @@ from itertools import pairwise
 import numpy as np
 
 from gearmesh.dynamics.continuation.branches import field_family
-from gearmesh.dynamics.continuation.curves import Curve, Family, Point
-from gearmesh.dynamics.continuation.special_points import (
+from gearmesh.dynamics.continuation.curves import Curve, Family
+from gearmesh.dynamics.continuation.points import Point
+from gearmesh.dynamics.continuation.special_points import SpecialPoint, search
+from gearmesh.dynamics.continuation.test_functions import (
     BACK,
     FRONT,
     Extrema,
-    SpecialPoint,
     flip_test,
-    search,
     torus_test,
 )
 from gearmesh.dynamics.continuation.walks import (

@@ -4,31 +4,22 @@ The test functions are computed for all points at once. A few array operations t
 pieces need a closer look.
 """
 
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
 
-from gearmesh.dynamics.continuation.curves import Point
 from gearmesh.dynamics.continuation.kinds import BIFURCATIONS, GRAZINGS
-from gearmesh.dynamics.continuation.special_points import (
-    BACK,
-    FRONT,
-    bifurcation_tests,
-    product_of_pairs,
-)
-from gearmesh.dynamics.periodic.shots import Shot
-from gearmesh.model.problem import Problem
-from gearmesh.solvers.reduced.derivatives.curves import DAMPING, JACOBIAN, TANGENT
-from gearmesh.solvers.reduced.derivatives.deviations import DEVIATIONS, SIZE
-from gearmesh.solvers.reduced.derivatives.period_map import segments_of
+from gearmesh.dynamics.continuation.points import Point
+from gearmesh.dynamics.continuation.test_functions import BACK, FRONT, bifurcation_values
+from gearmesh.dynamics.continuation.tracing import Track
+from gearmesh.dynamics.periodic.orbits import are_jumps
 from gearmesh.solvers.reduced.derivatives.variational import (
     AFTER,
     BEFORE,
     CROSSING,
     HEIGHT,
     KIND,
-    SEGMENT,
-    SWITCH,
     TURN,
     VELOCITY,
 )
@@ -36,7 +27,7 @@ from gearmesh.solvers.reduced.derivatives.variational import (
 _MARGIN = 0.25
 
 
-def suspects(points: list[Point]) -> list[tuple[int, set[str]]]:
+def suspects(points: Sequence[Point]) -> list[tuple[int, set[str]]]:
     """Return every i such that a special point may lie between points i and i + 1.
 
     A piece of the branch is suspect if a test function changes sign in it. It is also suspect if a
@@ -44,15 +35,11 @@ def suspects(points: list[Point]) -> list[tuple[int, set[str]]]:
     times its change nearby. All test functions are computed for all points at once, so only the
     suspect pieces need a closer look. The kinds that may lie there are returned with each i.
     """
-    found = [point.found for point in points if point.found and len(point.found[1])]
-    if len(found) == len(points):
-        bifurcations = _of_rows(points, np.array([row for row, _ in found]))
-        events = _of_events(points[0].orbit.problem, found)
+    if isinstance(points, Track) and all(map(len, points.events)):
+        events = _of_track(points)
     else:
-        tests = [test for _, test in bifurcation_tests()]
-        bifurcations = [np.array([test(point) for point in points]) for test in tests]
-        events = _of_shots([point.orbit for point in points])
-    functions = np.column_stack([*bifurcations, *events.heights, *events.velocities])
+        events = _of_points(points)
+    functions = np.column_stack([*bifurcation_values(points), *events.heights, *events.velocities])
     kinds = np.array([*BIFURCATIONS, *GRAZINGS, *("switching" for _ in events.velocities)])
     with np.errstate(invalid="ignore"):
         change = np.abs(np.diff(functions, axis=0))
@@ -86,10 +73,10 @@ class _Events(NamedTuple):
     beyond: np.ndarray
 
 
-def _of_shots(orbits: list[Shot]) -> _Events:
-    """Return the event functions of orbits from either solver."""
-    both = [[extrema(orbit)[:, 1] for orbit in orbits] for extrema in (FRONT, BACK)]
-    jumps = [orbit.stiffness_jumps for orbit in orbits]
+def _of_points(points: Sequence[Point]) -> _Events:
+    """Return the event functions of points."""
+    both = [[extrema(point.motion)[:, 1] for point in points] for extrema in (FRONT, BACK)]
+    jumps = [point.motion.stiffness_jumps for point in points]
     fewest = min(map(len, jumps))
     events = np.array([one[:fewest] for one in jumps])
     turning = events[:, :, BEFORE] * events[:, :, AFTER] < 0.0
@@ -100,19 +87,18 @@ def _of_shots(orbits: list[Shot]) -> _Events:
     )
 
 
-def _of_events(problem: Problem, found: list[tuple[np.ndarray, np.ndarray]]) -> _Events:
-    """Return the event functions of points that compiled code found."""
-    stiffness = segments_of(problem)[:, 1]
-    events = np.concatenate([one for _, one in found])
-    first = np.cumsum([0, *(len(one) for _, one in found[:-1])])
+def _of_track(track: Track) -> _Events:
+    """Return the event functions of points that compiled code found, all at once."""
+    events = np.concatenate(track.events)
+    first = np.cumsum([0, *map(len, track.events[:-1])])
     kind, height = events[:, KIND], events[:, HEIGHT]
-    jumps = (kind == SWITCH) & (stiffness != np.roll(stiffness, 1))[events[:, SEGMENT].astype(int)]
+    jumps = events[are_jumps(events, track.tracer.stated[0])]
     heights = [
         np.minimum.reduceat(np.where(kind == TURN, np.abs(height - level), np.inf), first)
-        for level in (0.0, -problem.backlash)
+        for level in (0.0, -track.tracer.problem.backlash)
     ]
-    velocities = events[jumps, VELOCITY].reshape(len(found), -1)
-    turning = (events[jumps, BEFORE] * events[jumps, AFTER] < 0.0).reshape(velocities.shape)
+    velocities = jumps[:, VELOCITY].reshape(len(track), -1)
+    turning = (jumps[:, BEFORE] * jumps[:, AFTER] < 0.0).reshape(velocities.shape)
     beyond = np.add.reduceat(kind == CROSSING, first, dtype=int)
     return _Events(heights, _counting(velocities, turning), beyond)
 
@@ -123,15 +109,3 @@ def _counting(velocities: np.ndarray, turning: np.ndarray) -> np.ndarray:
     beside[1:] |= turning[:-1]
     beside[:-1] |= turning[1:]
     return np.where(beside, velocities, np.nan).T
-
-
-def _of_rows(points: list[Point], rows: np.ndarray) -> list[np.ndarray]:
-    """Return the values of `bifurcation_tests` at points that compiled code found."""
-    extended = rows[:, JACOBIAN:TANGENT].reshape(-1, SIZE, DEVIATIONS)
-    jacobians = np.ascontiguousarray(extended[:, :, :SIZE])
-    return [
-        np.array([point.slope for point in points]),
-        np.array([point.determinant for point in points]),
-        np.linalg.det(jacobians + np.eye(SIZE)),
-        np.where(rows[:, DAMPING] != 0.0, product_of_pairs(jacobians), np.nan),
-    ]

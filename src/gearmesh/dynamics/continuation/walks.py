@@ -1,13 +1,17 @@
 """Walks along a curve of orbits in both directions, and the reasons why they end."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
 
-from gearmesh.dynamics.continuation.curves import Curve, Point
-from gearmesh.dynamics.continuation.special_points import flip_test
-from gearmesh.dynamics.periodic.shots import Shot
+from gearmesh.dynamics.continuation.curves import Curve
+from gearmesh.dynamics.continuation.points import Point
+from gearmesh.dynamics.continuation.test_functions import flip_test
+from gearmesh.dynamics.continuation.tracing import backwards, chained, first_values
+from gearmesh.dynamics.periodic.shots import Motion, Shot
 from gearmesh.errors import NoOrbit
 from gearmesh.solvers.reduced.derivatives.curves import FARTHEST, is_clear
 
@@ -43,11 +47,15 @@ class Piece:
     """
 
     curve: Curve
-    points: list[Point]
+    points: Sequence[Point]
 
     def reversed(self) -> "Piece":
         """Return the same piece, passed in the other direction."""
-        return Piece(self.curve, [point.reversed() for point in reversed(self.points)])
+        return Piece(self.curve, backwards(self.points))
+
+    def with_points(self, points: Sequence[Point]) -> "Piece":
+        """Return the piece with more points at its end."""
+        return Piece(self.curve, chained(self.points, points))
 
 
 class Walk(NamedTuple):
@@ -69,10 +77,10 @@ class Walk(NamedTuple):
 
 def walk(curve: Curve, start: Point, limits: Limits, longest: float) -> tuple[Walk, Walk]:
     """Walk from `start` against and along its tangent; on a closed curve both are the same walk."""
-    ahead = _walk(Piece(curve, [start]), limits, longest)
+    ahead = _walk(curve, start, limits, longest)
     if ahead.reason == CLOSED:
         return ahead, ahead
-    return _walk(Piece(curve, [start.reversed()]), limits, longest), ahead
+    return _walk(curve, start.reversed(), limits, longest), ahead
 
 
 def check_inside(name: str, value: float, low: float, high: float) -> None:
@@ -90,12 +98,16 @@ def clear_phase(orbit: Shot) -> float:
     phase = orbit.problem.initial_phase
     if orbit.repeats_after > 1:
         return phase
-    backlash = orbit.problem.backlash
-    if not is_clear.py_func(orbit.y, orbit.y_max, orbit.y_min, backlash):  # type: ignore[attr-defined]
-        course = orbit.time_course(_PLACES)
-        away = np.minimum(np.abs(course.y), np.abs(course.y + backlash))
+    if not _is_clear(orbit):
+        y = orbit.time_course(_PLACES).y
+        away = np.minimum(np.abs(y), np.abs(y + orbit.backlash))
         phase += int(np.argmax(away)) / _PLACES
     return float(phase % 1.0)
+
+
+def _is_clear(motion: Motion) -> bool:
+    clear: bool = is_clear.py_func(motion.y, motion.y_max, motion.y_min, motion.backlash)  # type: ignore[attr-defined]
+    return clear
 
 
 def joined(back: Walk, ahead: Walk) -> list[Piece]:
@@ -107,42 +119,76 @@ def joined(back: Walk, ahead: Walk) -> list[Piece]:
 
 def points_of(pieces: list[Piece]) -> list[Point]:
     """Return all points of successive pieces, each once."""
-    return pieces[0].points[:1] + [point for piece in pieces for point in piece.points[1:]]
+    return [pieces[0].points[0], *(point for piece in pieces for point in piece.points[1:])]
 
 
-def _walk(piece: Piece, limits: Limits, longest: float) -> Walk:
-    """Follow the branch from the only point of `piece`."""
-    start, pieces = piece.points[0], [piece]
+def _walk(curve: Curve, start: Point, limits: Limits, longest: float) -> Walk:
+    """Follow the branch from `start`, along its tangent."""
+    point, pieces = start, [Piece(curve, curve.track(start))]
     length = _FIRST_STEP * longest
     while sum(len(piece.points) for piece in pieces) < MOST_POINTS:
-        curve, point = pieces[-1].curve, pieces[-1].points[-1]
         if _leaves(curve, point, limits):
             return Walk(pieces, LIMIT, [])
         try:
-            phase = clear_phase(point.orbit)
-            if phase != curve.phase:
-                curve, point = curve.moved_to(phase, point)
-                pieces.append(Piece(curve, [point]))
+            if not _is_clear(point.motion):
+                phase = clear_phase(point.orbit)
+                if phase != curve.phase:
+                    curve, point = curve.moved_to(phase, point)
+                    pieces.append(Piece(curve, curve.track(point)))
             ahead, length = curve.ahead(point, length, longest, limits)
         except NoOrbit as error:
             flip = _flip_at_end(curve, point)
             return Walk(pieces, HALVED if flip else f"the branch ends: {error}", flip)
-        for following in ahead:
-            if _halves(curve) and _half_way(point) @ _half_way(following) < 0.0:
-                return Walk(pieces, HALVED, _flip_at_end(curve, point))
-            for i, (low, high) in enumerate(limits):
-                if not low <= following.values[i] <= high:
-                    edge = low if following.values[i] < low else high
-                    if abs(edge - point.values[i]) > _AT_LIMIT * curve.units[i]:
-                        pieces[-1].points.append(_between(curve, point, following, edge, i))
-                    return Walk(pieces, LIMIT, [])
-            pieces[-1].points.append(following)
-            if _is_back(curve, point, following, start):
-                return Walk(pieces, CLOSED, [])
-            point = following
-        if max(point.orbit.y_max, -point.orbit.y_min) > FARTHEST:
+        ahead, reason = _up_to_end(curve, point, ahead, start, limits)
+        pieces[-1] = pieces[-1].with_points(ahead)
+        if reason:
+            flip = _flip_at_end(curve, pieces[-1].points[-1]) if reason == HALVED else []
+            return Walk(pieces, reason, flip)
+        point = ahead[-1]
+        if point.size > FARTHEST:
             return Walk(pieces, FAR, [])
     return Walk(pieces, "too many points", [])
+
+
+def _up_to_end(
+    curve: Curve, point: Point, ahead: Sequence[Point], start: Point, limits: Limits
+) -> tuple[Sequence[Point], str]:
+    """Return the points behind `point` up to the end of a walk, and why it ends, if it does.
+
+    Only the last of the points may be outside the limits.
+    """
+    reason, outside = "", None
+    if _halves(curve):
+        sides = [_half_way(one) for one in (point, *ahead)]
+        turned = [here @ there < 0.0 for here, there in pairwise(sides)]
+        if any(turned):
+            ahead, reason = ahead[: turned.index(True)], HALVED
+    if ahead and not _is_inside(ahead[-1], limits):
+        ahead, outside, reason = ahead[:-1], ahead[-1], LIMIT
+    below = np.append(point.values[0], first_values(ahead)) < start.values[0]
+    for i in np.flatnonzero(np.diff(below)).tolist():
+        before = ahead[i - 1] if i else point
+        if before is not start and _is_back(curve, before, ahead[i], start):
+            return ahead[: i + 1], CLOSED
+    if outside is not None:
+        end = _at_limit(curve, ahead[-1] if ahead else point, outside, limits)
+        ahead = chained(ahead, end)
+    return ahead, reason
+
+
+def _is_inside(point: Point, limits: Limits) -> bool:
+    return all(low <= one <= high for one, (low, high) in zip(point.values, limits, strict=True))
+
+
+def _at_limit(curve: Curve, point: Point, outside: Point, limits: Limits) -> Sequence[Point]:
+    """Return the point where a curve leaves the limits, or none if it is `point` itself."""
+    for i, (low, high) in enumerate(limits):
+        if not low <= outside.values[i] <= high:
+            edge = low if outside.values[i] < low else high
+            if abs(edge - point.values[i]) > _AT_LIMIT * curve.units[i]:
+                return curve.track(_between(curve, point, outside, edge, i))
+            break
+    return []
 
 
 def _leaves(curve: Curve, point: Point, limits: Limits) -> bool:
@@ -196,13 +242,8 @@ def _between(curve: Curve, point: Point, following: Point, value: float, i: int 
 
 
 def _is_back(curve: Curve, point: Point, following: Point, start: Point) -> bool:
-    """Return whether a closed branch passes its first point between two points."""
-    rises = following.slope * start.slope > 0.0
-    if (
-        point is start
-        or not rises
-        or (point.values[0] < start.values[0]) == (following.values[0] < start.values[0])
-    ):
+    """Return whether a closed branch is at its first point again between two points."""
+    if not following.slope * start.slope > 0.0:
         return False
     here = _between(curve, point, following, start.values[0]).orbit
     state = here.at_phase(start.orbit.problem.initial_phase).state

@@ -103,6 +103,16 @@ class GeneralOrbit:
         return run_of(self.held, self.initial_state, self.periods, samples_per_period)
 
     @property
+    def period(self) -> float:
+        """Mesh period T in tau_s."""
+        return self.problem.period
+
+    @property
+    def backlash(self) -> float:
+        """Constant part of the backlash, s / y_st."""
+        return self.problem.backlash
+
+    @property
     def y(self) -> float:
         """Relative motion y at the initial phase."""
         return float(self.response.strobe_y[0])

@@ -118,6 +118,16 @@ class Orbit:
         return 1
 
     @property
+    def period(self) -> float:
+        """Mesh period T in tau_s."""
+        return self.problem.period
+
+    @property
+    def backlash(self) -> float:
+        """Constant part of the backlash, s / y_st."""
+        return self.problem.backlash
+
+    @property
     def y(self) -> float:
         """Relative motion y at the initial phase."""
         return float(self.state[0])
@@ -217,8 +227,7 @@ class Orbit:
     @cached_property
     def extrema(self) -> np.ndarray:
         """Extrema of y over the orbit's own period, shape (n, 3): time, y, kind (1 or -1)."""
-        turns = self._turns
-        return np.column_stack([turns[:, TIME], turns[:, HEIGHT], -np.sign(turns[:, AFTER])])
+        return extrema_of(self.passage.events)
 
     @cached_property
     def gap_extrema(self) -> np.ndarray:
@@ -228,11 +237,7 @@ class Orbit:
     @cached_property
     def stiffness_jumps(self) -> np.ndarray:
         """The events at which C(t) jumps."""
-        events = self.passage.events
-        events = events[events[:, KIND] == SWITCH]
-        stiffness = segments_of(self.problem)[:, 1]
-        number = events[:, SEGMENT].astype(int)
-        return events[stiffness[number] != stiffness[number - 1]]
+        return jumps_of(self.passage.events, segments_of(self.problem))
 
     @property
     def _turns(self) -> np.ndarray:
@@ -360,6 +365,25 @@ def correct(problem: Problem, state: np.ndarray, periods: int = 1) -> Orbit:
             if np.abs(end - orbit.state).max() < _SAME:
                 raise NoOrbit(f"Newton's method leads to an orbit of period {shorter}")
     return orbit
+
+
+def extrema_of(events: np.ndarray) -> np.ndarray:
+    """Return the extrema among the events of a passage, as of `Orbit.extrema`."""
+    extrema = events[events[:, KIND] == TURN][:, [TIME, HEIGHT, AFTER]]
+    extrema[:, 2] = -np.sign(extrema[:, 2])
+    return extrema
+
+
+def jumps_of(events: np.ndarray, segments: np.ndarray) -> np.ndarray:
+    """Return the events at which C(t) jumps, given the segments of `segments_of`."""
+    return events[are_jumps(events, segments)]
+
+
+def are_jumps(events: np.ndarray, segments: np.ndarray) -> np.ndarray:
+    """Return whether C(t) jumps at each event."""
+    stiffness = segments[:, 1]
+    begins = stiffness != np.roll(stiffness, 1)
+    return (events[:, KIND] == SWITCH) & begins[events[:, SEGMENT].astype(int)]
 
 
 def newton_correction(moved: Passage, state: np.ndarray) -> np.ndarray:

@@ -1,4 +1,4 @@
-"""The interface that curves of orbits need from a motion, whichever solver integrates it."""
+"""The interfaces that curves of orbits need from a motion, whichever solver integrates it."""
 
 from typing import Protocol, Self
 
@@ -8,7 +8,58 @@ from gearmesh.dynamics.periodic.orbits import TimeCourse
 from gearmesh.model.problem import Problem
 
 
-class Shot(Protocol):
+class Motion(Protocol):
+    """The part of a `Shot` that curves and the tests for special points read.
+
+    Compiled code gives these numbers at once, before a `Shot` is made of them.
+    """
+
+    @property
+    def period(self) -> float:
+        """Mesh period T in tau_s."""
+
+    @property
+    def periods(self) -> int:
+        """Mesh periods of the motion."""
+
+    @property
+    def backlash(self) -> float:
+        """Constant part of the backlash, s / y_st."""
+
+    @property
+    def monodromy(self) -> np.ndarray:
+        """The matrix whose eigenvalues are the Floquet multipliers."""
+
+    @property
+    def undamped(self) -> bool:
+        """Whether no damping of the mesh acts along the orbit."""
+
+    @property
+    def extrema(self) -> np.ndarray:
+        """Extrema of y, shape (n, 3): time, y, kind (1 or -1)."""
+
+    @property
+    def gap_extrema(self) -> np.ndarray:
+        """Extrema of y + s(t), as of `extrema`; they touch 0 where the back flanks graze."""
+
+    @property
+    def stiffness_jumps(self) -> np.ndarray:
+        """Events at which C(t) jumps, with the columns of `reduced.derivatives.variational`."""
+
+    @property
+    def y(self) -> float:
+        """Relative motion y at the initial phase."""
+
+    @property
+    def y_max(self) -> float:
+        """Greatest y."""
+
+    @property
+    def y_min(self) -> float:
+        """Least y."""
+
+
+class Shot(Motion, Protocol):
     """A motion over whole mesh periods; it is an orbit if its defect is 0.
 
     `orbits.Orbit` is one of the reduced system, with exact derivatives, and
@@ -18,10 +69,6 @@ class Shot(Protocol):
     @property
     def problem(self) -> Problem:
         """The gear pair."""
-
-    @property
-    def periods(self) -> int:
-        """Mesh periods of the motion."""
 
     @property
     def repeats_after(self) -> int:
@@ -44,10 +91,6 @@ class Shot(Protocol):
         """Derivative of the defect with respect to the logarithm of the mesh period, if known."""
 
     @property
-    def monodromy(self) -> np.ndarray:
-        """The matrix whose eigenvalues are the Floquet multipliers."""
-
-    @property
     def multipliers(self) -> np.ndarray:
         """Floquet multipliers, the largest modulus first."""
 
@@ -66,34 +109,6 @@ class Shot(Protocol):
     @property
     def neutral(self) -> bool:
         """Whether no damping of the mesh acts along the orbit and nothing grows."""
-
-    @property
-    def undamped(self) -> bool:
-        """Whether no damping of the mesh acts along the orbit."""
-
-    @property
-    def extrema(self) -> np.ndarray:
-        """Extrema of y, shape (n, 3): time, y, kind (1 or -1)."""
-
-    @property
-    def gap_extrema(self) -> np.ndarray:
-        """Extrema of y + s(t), as of `extrema`; they touch 0 where the back flanks graze."""
-
-    @property
-    def stiffness_jumps(self) -> np.ndarray:
-        """Events at which C(t) jumps, with the columns of `reduced.derivatives.variational`."""
-
-    @property
-    def y_max(self) -> float:
-        """Greatest y."""
-
-    @property
-    def y_min(self) -> float:
-        """Least y."""
-
-    @property
-    def y(self) -> float:
-        """Relative motion y at the initial phase."""
 
     @property
     def v(self) -> float:

@@ -1,0 +1,239 @@
+"""Points of curves over the mesh frequency that compiled code finds, and what they show at once."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property, partial
+from typing import overload
+
+import numpy as np
+
+from gearmesh.dynamics.continuation.points import Point
+from gearmesh.dynamics.periodic.orbits import Orbit, extrema_of, jumps_of
+from gearmesh.errors import NoOrbit
+from gearmesh.model.problem import Problem
+from gearmesh.solvers.reduced.derivatives import curves
+from gearmesh.solvers.reduced.derivatives.curves import LARGEST_RESIDUAL
+from gearmesh.solvers.reduced.derivatives.deviations import DEVIATIONS, SIZE
+from gearmesh.solvers.reduced.derivatives.period_map import (
+    STATUSES,
+    Statement,
+    passage_of,
+    statement,
+    trace,
+)
+from gearmesh.solvers.reduced.derivatives.variational import COMPLETE
+
+MOST_CORRECTIONS = 12
+_MOST_STEPS = 64  # in one call of the compiled code
+
+
+@dataclass(frozen=True)
+class Tracer:
+    """The orbits of a problem over nu, as compiled code finds them.
+
+    Attributes
+    ----------
+    problem : Problem
+        At any nu.
+    periods : int
+        Mesh periods of the orbits.
+    unit : float
+        Change of nu that counts like a change of 1 in the state.
+    """
+
+    problem: Problem
+    periods: int
+    unit: float
+
+    @cached_property
+    def stated(self) -> Statement:
+        """The problem in the form that the compiled code takes."""
+        return statement(self.problem, self.periods)
+
+    def point(self, place: np.ndarray, normal: np.ndarray, along: np.ndarray) -> Point:
+        """Return the point as of `Curve.point`."""
+        return self._landed(place, normal, along, MOST_CORRECTIONS)
+
+    def beside(self, point: Point, length: float) -> Point:
+        """Return the point as of `Curve.beside`."""
+        along = point.tangent
+        return self._landed(point.place + length * along, along, along, 0)
+
+    def _landed(
+        self, place: np.ndarray, normal: np.ndarray, along: np.ndarray, corrections: int
+    ) -> Point:
+        points, events, _ = trace(self.stated, place, normal, self.unit, corrections)
+        row = points[0]
+        if row[curves.OUTCOME] != COMPLETE:
+            raise NoOrbit(f"the motion ends with {STATUSES[int(row[curves.OUTCOME])]}")
+        residual = np.abs(row[curves.END : curves.JACOBIAN] - row[:SIZE]).max()
+        if corrections and not residual < LARGEST_RESIDUAL:
+            raise NoOrbit(f"the corrector stops at a residual of {residual:.1e}")
+        if row[curves.TANGENT : curves.DETERMINANT] @ along < 0.0:
+            row[curves.TANGENT : curves.OUTCOME] *= -1.0
+        return self.read(row, events[0, : int(row[curves.N_EVENTS])])
+
+    def ahead(
+        self, point: Point, length: float, longest: float, limits: tuple[float, float]
+    ) -> tuple["Track", float]:
+        """Return the next points and the next length as of `Curve.ahead`."""
+        rows, events, length = trace(
+            self.stated,
+            point.place,
+            point.tangent,
+            self.unit,
+            MOST_CORRECTIONS,
+            _MOST_STEPS,
+            length,
+            longest,
+            limits,
+        )
+        if len(rows) == 1:
+            raise NoOrbit("it bends too sharply")
+        counts = rows[1:, curves.N_EVENTS].astype(int).tolist()
+        found = [one[:count] for one, count in zip(events[1:], counts, strict=False)]
+        return Track(self, rows[1:], found), length
+
+    def track(self, point: Point) -> "Track":
+        """Return a track of one point, in the direction of the point's tangent."""
+        motion = point.motion
+        assert isinstance(motion, _Traced)
+        row = motion.row.copy()
+        row[curves.TANGENT : curves.DETERMINANT] = point.tangent
+        row[curves.DETERMINANT] = point.determinant
+        return Track(self, row[None], [motion.events])
+
+    def read(self, row: np.ndarray, events: np.ndarray) -> Point:
+        """Return the point that stands in a row of the compiled code."""
+        motion = _Traced(self, row, events)
+        return Point(
+            row[: curves.DIMENSIONS],
+            (motion.nu,),
+            row[curves.TANGENT : curves.DETERMINANT],
+            float(row[curves.DETERMINANT]),
+            motion,
+            partial(_orbit, motion),
+        )
+
+
+@dataclass(frozen=True, eq=False)
+class _Traced:
+    """A motion that compiled code found, with the names of `Motion`."""
+
+    tracer: Tracer
+    row: np.ndarray
+    events: np.ndarray
+
+    @property
+    def nu(self) -> float:
+        return float(self.row[SIZE]) * self.tracer.unit
+
+    @property
+    def period(self) -> float:
+        return 2.0 * np.pi / self.nu
+
+    @property
+    def periods(self) -> int:
+        return self.tracer.periods
+
+    @property
+    def backlash(self) -> float:
+        return self.tracer.problem.backlash
+
+    @property
+    def monodromy(self) -> np.ndarray:
+        return monodromies(self.row)
+
+    @property
+    def undamped(self) -> bool:
+        return bool(self.row[curves.DAMPING] == 0.0)
+
+    @cached_property
+    def extrema(self) -> np.ndarray:
+        return extrema_of(self.events)
+
+    @property
+    def gap_extrema(self) -> np.ndarray:
+        return self.extrema + np.array([0.0, self.backlash, 0.0])
+
+    @cached_property
+    def stiffness_jumps(self) -> np.ndarray:
+        return jumps_of(self.events, self.tracer.stated[0])
+
+    @property
+    def y(self) -> float:
+        return float(self.row[0])
+
+    @property
+    def y_max(self) -> float:
+        return float(self.row[curves.Y_MAX])
+
+    @property
+    def y_min(self) -> float:
+        return float(self.row[curves.Y_MIN])
+
+
+def _orbit(motion: _Traced) -> Orbit:
+    tracer, row = motion.tracer, motion.row
+    moved = passage_of(tracer.stated, tracer.unit, row, motion.events)
+    return Orbit(replace(tracer.problem, nu=motion.nu), tracer.periods, row[:SIZE], moved)
+
+
+class Track(Sequence[Point]):
+    """Successive points of a curve, read from arrays when they are asked for.
+
+    Attributes
+    ----------
+    tracer : Tracer
+    rows : ndarray, shape (n, POINT_SIZE)
+        The columns of `gearmesh.solvers.reduced.derivatives.curves`.
+    events : list of ndarray
+        Events of each motion.
+    """
+
+    def __init__(self, tracer: Tracer, rows: np.ndarray, events: list[np.ndarray]) -> None:
+        self.tracer, self.rows, self.events = tracer, rows, events
+
+    def __len__(self) -> int:
+        return len(self.events)
+
+    @overload
+    def __getitem__(self, index: int) -> Point: ...
+
+    @overload
+    def __getitem__(self, index: slice) -> "Track": ...
+
+    def __getitem__(self, index: int | slice) -> "Point | Track":
+        if isinstance(index, slice):
+            return Track(self.tracer, self.rows[index], self.events[index])
+        return self.tracer.read(self.rows[index], self.events[index])
+
+
+def chained(first: Sequence[Point], second: Sequence[Point]) -> Sequence[Point]:
+    """Return the points of two sequences in one."""
+    if isinstance(first, Track) and isinstance(second, Track):
+        rows = np.concatenate([first.rows, second.rows])
+        return Track(first.tracer, rows, first.events + second.events)
+    return [*first, *second] if second else first
+
+
+def backwards(points: Sequence[Point]) -> Sequence[Point]:
+    """Return the same points, passed in the other direction."""
+    if isinstance(points, Track):
+        rows = points.rows[::-1].copy()
+        rows[:, curves.TANGENT : curves.OUTCOME] *= -1.0
+        return Track(points.tracer, rows, points.events[::-1])
+    return [point.reversed() for point in reversed(points)]
+
+
+def first_values(points: Sequence[Point]) -> np.ndarray:
+    """Return the first parameter at each point, shape (n,)."""
+    if isinstance(points, Track):
+        return points.rows[:, SIZE] * points.tracer.unit
+    return np.array([point.values[0] for point in points])
+
+
+def monodromies(rows: np.ndarray) -> np.ndarray:
+    """Return the monodromy matrices of rows, shape (..., 4, 4)."""
+    extended = rows[..., curves.JACOBIAN : curves.TANGENT]
+    return extended.reshape(*extended.shape[:-1], SIZE, DEVIATIONS)[..., :SIZE]

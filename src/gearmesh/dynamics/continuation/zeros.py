@@ -1,0 +1,201 @@
+"""Zeros of test functions between neighbouring points of a branch.
+
+If a test function changes sign between two points, a root is located on the branch itself. If its
+tangents at both ends allow two roots in between, the piece of the branch is halved until they do
+not.
+"""
+
+from collections.abc import Callable, Iterator, Sequence
+from itertools import pairwise
+
+import numpy as np
+
+from gearmesh.dynamics.continuation.curves import Curve
+from gearmesh.dynamics.continuation.points import Point
+from gearmesh.dynamics.continuation.test_functions import Function
+from gearmesh.errors import NoOrbit
+
+Beside = Callable[[Point, float], Point]
+"""`Curve.beside` of a curve, which remembers the points."""
+
+_OFFSET = 1e-5
+_NARROWEST = 1e-6  # piece of a branch; roots of one test closer than this are not separated
+_ROOT_WIDTH = 1e-13  # share of a piece
+_KNOWN = 6  # values from which a root is predicted
+_MOST_PREDICTIONS = 6  # after these every second point halves the interval
+_MOST_POINTS = 100  # of a search
+_FAR = 2.0  # times its changes between points nearby: more than a function falls between two
+_NEAREST = 1e-10  # distance from an abrupt root that stands for it
+_SHARE = 0.99  # of the distance to such a root that a step passes
+
+
+def zeros(
+    curve: Curve,
+    left: Point,
+    right: Point,
+    test: Function,
+    beside: Beside,
+    around: Sequence[Point] = (),
+    abrupt: bool = False,
+) -> Iterator[tuple[Point, Point, Point]]:
+    """Yield the points between two others where a function changes sign, and their neighbours.
+
+    Parameters
+    ----------
+    curve : Curve
+    left, right : Point
+    test : callable
+    beside : callable
+        As `Beside`.
+    around : sequence of Point
+        Points next to the piece, at which the function is as smooth as in it.
+    abrupt : bool
+        Whether the function is known only where it is positive.
+    """
+    if len(around) == 2 and keeps_its_sign(
+        [test(one) for one in (around[0], left, right, around[1])]
+    ):
+        return
+    offset = min(_OFFSET, 0.1 * length_between(left, right))
+    pieces = [(left, right)]
+    while pieces:
+        start, end = pieces.pop()
+        before, after = test(start), test(end)
+        if np.isnan(before) or np.isnan(after):
+            continue
+        if (before < 0.0) != (after < 0.0):
+            found = (
+                _approach(curve, start, end, test)
+                if abrupt
+                else _locate(curve, start, end, test, around)
+            )
+            yield start, found, end
+        elif _may_dip(test, (start, before), (end, after), beside, offset):
+            middle = curve.between(start, end, start.tangent, 0.5)
+            pieces += [(start, middle), (middle, end)]
+
+
+def keeps_its_sign(values: list[float], smooth: bool = True) -> bool:
+    """Return whether a function keeps its sign between the middle two of four successive points.
+
+    It does if it is far from 0, or if it is smooth and rises or falls all along.
+    """
+    if len(values) < 4 or (values[1] < 0.0) != (values[2] < 0.0):
+        return False
+    changes = [after - before for before, after in pairwise(values)]
+    monotone = smooth and (min(changes) > 0.0 or max(changes) < 0.0)
+    least, most = min(map(abs, values[1:3])), max(map(abs, changes))
+    return monotone or least > _FAR * most
+
+
+def length_between(left: Point, right: Point) -> float:
+    """Return the length of a piece of a branch."""
+    return float(left.tangent @ (right.place - left.place))
+
+
+def _may_dip(
+    test: Function,
+    left: tuple[Point, float],
+    right: tuple[Point, float],
+    beside: Beside,
+    offset: float,
+) -> bool:
+    """Return whether a function of one sign at both ends may pass 0 in between.
+
+    Where it approaches 0 at both ends, the tangents there bound a convex function from below. The
+    slopes are those between the ends, given with their values, and points beside them.
+    """
+    (start, before), (end, after) = left, right
+    length, sign = length_between(start, end), -1.0 if before < 0.0 else 1.0
+    if length < _NARROWEST:
+        return False
+    down = sign * (test(beside(start, offset)) - before) / offset
+    if not down < 0.0:
+        return False
+    up = sign * (after - test(beside(end, -offset))) / offset
+    if not up > 0.0:
+        return False
+    where = (sign * (after - before) - up * length) / (down - up)
+    return bool(sign * before + down * where < 0.0)
+
+
+def _locate(
+    curve: Curve, left: Point, right: Point, test: Function, around: Sequence[Point]
+) -> Point:
+    """Return the point between two others where a test function passes 0.
+
+    Its place is predicted again and again from the values nearest to 0, between two points where
+    the function has different signs. Each point is predicted from the two nearest ones.
+    """
+    normal, length = left.tangent, length_between(left, right)
+    known = [
+        (value, float(normal @ (point.place - left.place)) / length, point)
+        for point in (left, right, *around)
+        if not np.isnan(value := test(point))
+    ]
+    (_, low, before), (value, high, after) = known[:2]
+    rising = value >= 0.0
+    for count in range(_MOST_POINTS):
+        share = _root(sorted(known, key=_size)[:_KNOWN])
+        if not low <= share <= high or (count > _MOST_PREDICTIONS and count % 2):
+            share = 0.5 * (low + high)
+        nearest = min(known, key=lambda one: abs(one[1] - share))
+        if abs(nearest[1] - share) < _ROOT_WIDTH:
+            break
+        point = curve.between(before, after, normal, (share - low) / (high - low))
+        value = test(point)
+        nearest = value, share, point
+        if not abs(value) > 0.0:
+            break
+        known.append(nearest)
+        if (value >= 0.0) == rising:
+            high, after = share, point
+        else:
+            low, before = share, point
+    return nearest[2]
+
+
+def _root(known: list[tuple[float, float, Point]]) -> float:
+    """Return where a polynomial, which gives the share as a function of the value, is at 0."""
+    values, shares = [one[0] for one in known], [one[1] for one in known]
+    for order in range(1, len(known)):
+        for i in range(len(known) - order):
+            change = values[i] - values[i + order]
+            if change == 0.0:
+                return float("nan")
+            shares[i] += values[i] * (shares[i + 1] - shares[i]) / change
+    return shares[0]
+
+
+def _size(known: tuple[float, float, Point]) -> float:
+    return abs(known[0])
+
+
+def _approach(curve: Curve, left: Point, right: Point, test: Function) -> Point:
+    """Return the point between two others where a height falls to 0.
+
+    It is approached from the side where the height is positive.
+
+    Flanks with a moving gap touch at a rate y' that is not 0. If the damping jumps there, the
+    motion behind the grazing changes with the square root of the depth, and Newton's method may
+    fail. Before the grazing the height is smooth, and three points tell where it passes 0.
+    """
+    normal, forth = left.tangent, test(left) > 0.0
+    free, length = (left, _OFFSET) if forth else (right, -_OFFSET)
+    heights, distances = [test(free)], [0.0]
+    while abs(length) > _NEAREST:
+        place = free.place + length / float(free.tangent @ normal) * free.tangent
+        try:
+            point = curve.point(place, normal, normal)
+            height = test(point)
+        except NoOrbit:
+            height = 0.0
+        if not height > 0.0:
+            length *= 0.5
+            continue
+        free = point
+        heights, distances = [*heights[-2:], height], [*distances[-2:], distances[-1] + length]
+        # A parabola gives the distance as a function of the height.
+        parabola = np.linalg.solve(np.vander(np.array(heights) / height), distances)
+        length = _SHARE * float(parabola[-1] - distances[-1])
+    return free
