@@ -61,7 +61,8 @@ def search(
     beside = beside or cache(curve.beside)
     found = [
         (kind, point)
-        for kind, test in tests
+        for kind, uncached in tests
+        for test in (cache(uncached),)
         for start, point, end in zeros(
             curve, left, right, test, beside, around, kind == "grazing_back" and curve.gap_moves
         )
@@ -79,7 +80,8 @@ def special_points(
     between the grazings and not across them. Wherever an event is found, all of them are tested.
     """
     left, right, beside = points[i], points[i + 1], cache(curve.beside)
-    before, after = [*points[max(i - 1, 0) : i]], [*points[i + 2 : i + 3]]
+    before = [points[i - 1]] if i > 0 else []
+    after = [points[i + 2]] if i + 2 < len(points) else []
     around = [*before, *after]
     tests = event_tests(left, right, kinds)
     events = _once(search(curve, left, right, tests, beside, around))

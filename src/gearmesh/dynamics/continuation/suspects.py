@@ -14,10 +14,12 @@ from gearmesh.dynamics.continuation.points import Point
 from gearmesh.dynamics.continuation.test_functions import BACK, FRONT, bifurcation_values
 from gearmesh.dynamics.continuation.tracing import Track
 from gearmesh.dynamics.periodic.orbits import are_jumps
+from gearmesh.solvers.reduced.derivatives import curves
 from gearmesh.solvers.reduced.derivatives.variational import (
     AFTER,
     BEFORE,
     CROSSING,
+    EVENT_SIZE,
     HEIGHT,
     KIND,
     TURN,
@@ -39,19 +41,23 @@ def suspects(points: Sequence[Point]) -> list[tuple[int, set[str]]]:
         events = _of_track(points)
     else:
         events = _of_points(points)
-    functions = np.column_stack([*bifurcation_values(points), *events.heights, *events.velocities])
-    kinds = np.array([*BIFURCATIONS, *GRAZINGS, *("switching" for _ in events.velocities)])
+    functions = np.concatenate([bifurcation_values(points), events.heights, events.velocities])
+    kinds = [*BIFURCATIONS, *GRAZINGS, *["switching"] * len(events.velocities)]
     with np.errstate(invalid="ignore"):
-        change = np.abs(np.diff(functions, axis=0))
+        change = np.abs(functions[:, 1:] - functions[:, :-1])
         nearby = change.copy()
-        nearby[1:] = np.fmax(nearby[1:], change[:-1])
-        nearby[:-1] = np.fmax(nearby[:-1], change[1:])
+        nearby[:, 1:] = np.fmax(nearby[:, 1:], change[:, :-1])
+        nearby[:, :-1] = np.fmax(nearby[:, :-1], change[:, 1:])
         size = np.abs(functions)
-        near = (functions[1:] * functions[:-1] <= 0.0) | (
-            np.fmin(size[1:], size[:-1]) < _MARGIN * nearby
+        near = (functions[:, 1:] * functions[:, :-1] <= 0.0) | (
+            np.fmin(size[:, 1:], size[:, :-1]) < _MARGIN * nearby
         )
-    near[:, np.isin(kinds, GRAZINGS)] |= (np.diff(events.beyond) != 0)[:, None]
-    return [(int(i), set(kinds[near[i]])) for i in np.flatnonzero(near.any(axis=1))]
+    first = len(BIFURCATIONS)
+    near[first : first + len(GRAZINGS)] |= events.beyond[:, 1:] != events.beyond[:, :-1]
+    found: dict[int, set[str]] = {}
+    for i, k in np.argwhere(near.T).tolist():
+        found.setdefault(i, set()).add(kinds[k])
+    return list(found.items())
 
 
 class _Events(NamedTuple):
@@ -59,16 +65,16 @@ class _Events(NamedTuple):
 
     Attributes
     ----------
-    heights : list of two ndarray, shape (n,)
+    heights : ndarray, shape (2, n)
         The least distances between extrema of y and the ends of regimes, front and back.
     velocities : ndarray, shape (m, n)
         The velocities where C(t) jumps. Such a velocity counts only if y'' changes sign at the
         jump, at this point or a neighbouring one; otherwise it is not-a-number.
-    beyond : ndarray, shape (n,)
-        A number that changes with the regimes that an orbit passes.
+    beyond : ndarray, shape (2, n)
+        Numbers that change with the regimes that an orbit passes, front and back.
     """
 
-    heights: list[np.ndarray]
+    heights: np.ndarray
     velocities: np.ndarray
     beyond: np.ndarray
 
@@ -81,31 +87,31 @@ def _of_points(points: Sequence[Point]) -> _Events:
     events = np.array([one[:fewest] for one in jumps])
     turning = events[:, :, BEFORE] * events[:, :, AFTER] < 0.0
     return _Events(
-        [np.array([np.abs(h).min(initial=np.inf) for h in heights]) for heights in both],
-        _counting(events[:, :, VELOCITY], turning),
-        np.array([sum((h < 0.0).sum() for h in heights) for heights in zip(*both, strict=True)]),
+        np.array([[np.abs(h).min(initial=np.inf) for h in heights] for heights in both]),
+        _counting(events[:, :, VELOCITY].T, turning.T),
+        np.array([[(h < 0.0).sum() for h in heights] for heights in both]),
     )
 
 
 def _of_track(track: Track) -> _Events:
     """Return the event functions of points that compiled code found, all at once."""
-    events = np.concatenate(track.events)
-    first = np.cumsum([0, *map(len, track.events[:-1])])
+    tracer, counts = track.tracer, track.rows[:, curves.N_EVENTS].astype(int)
+    events, first = np.concatenate(track.events), np.cumsum(counts) - counts
     kind, height = events[:, KIND], events[:, HEIGHT]
-    jumps = events[are_jumps(events, track.tracer.stated[0])]
-    heights = [
-        np.minimum.reduceat(np.where(kind == TURN, np.abs(height - level), np.inf), first)
-        for level in (0.0, -track.tracer.problem.backlash)
-    ]
-    velocities = jumps[:, VELOCITY].reshape(len(track), -1)
-    turning = (jumps[:, BEFORE] * jumps[:, AFTER] < 0.0).reshape(velocities.shape)
-    beyond = np.add.reduceat(kind == CROSSING, first, dtype=int)
-    return _Events(heights, _counting(velocities, turning), beyond)
+    levels = np.array([[0.0], [-tracer.problem.backlash]])
+    away = np.where(kind == TURN, np.abs(height - levels), np.inf)
+    passes = (kind == CROSSING) & (height == levels)
+    jumps = events[are_jumps(events, tracer.jumping)].reshape(len(track), -1, EVENT_SIZE).T
+    return _Events(
+        np.minimum.reduceat(away, first, axis=1),
+        _counting(jumps[VELOCITY], jumps[BEFORE] * jumps[AFTER] < 0.0),
+        np.add.reduceat(passes, first, axis=1, dtype=int),
+    )
 
 
 def _counting(velocities: np.ndarray, turning: np.ndarray) -> np.ndarray:
-    """Return velocities at jumps, shape (n, m), as `_Events` describes them."""
+    """Return the velocities at jumps, shape (m, n), that count as `_Events` says."""
     beside = turning.copy()
-    beside[1:] |= turning[:-1]
-    beside[:-1] |= turning[1:]
-    return np.where(beside, velocities, np.nan).T
+    beside[:, 1:] |= turning[:, :-1]
+    beside[:, :-1] |= turning[:, 1:]
+    return np.where(beside, velocities, np.nan)

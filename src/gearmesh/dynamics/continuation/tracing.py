@@ -8,7 +8,7 @@ from typing import overload
 import numpy as np
 
 from gearmesh.dynamics.continuation.points import Point
-from gearmesh.dynamics.periodic.orbits import Orbit, extrema_of, jumps_of
+from gearmesh.dynamics.periodic.orbits import Orbit, are_jumps, extrema_of, jumping_segments
 from gearmesh.errors import NoOrbit
 from gearmesh.model.problem import Problem
 from gearmesh.solvers.reduced.derivatives import curves
@@ -49,6 +49,11 @@ class Tracer:
     def stated(self) -> Statement:
         """The problem in the form that the compiled code takes."""
         return statement(self.problem, self.periods)
+
+    @cached_property
+    def jumping(self) -> np.ndarray:
+        """Whether C(t) jumps at the start of each segment of the mesh period."""
+        return jumping_segments(self.stated[0])
 
     def point(self, place: np.ndarray, normal: np.ndarray, along: np.ndarray) -> Point:
         """Return the point as of `Curve.point`."""
@@ -158,7 +163,7 @@ class _Traced:
 
     @cached_property
     def stiffness_jumps(self) -> np.ndarray:
-        return jumps_of(self.events, self.tracer.stated[0])
+        return self.events[are_jumps(self.events, self.tracer.jumping)]
 
     @property
     def y(self) -> float:

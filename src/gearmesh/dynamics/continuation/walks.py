@@ -53,10 +53,6 @@ class Piece:
         """Return the same piece, passed in the other direction."""
         return Piece(self.curve, backwards(self.points))
 
-    def with_points(self, points: Sequence[Point]) -> "Piece":
-        """Return the piece with more points at its end."""
-        return Piece(self.curve, chained(self.points, points))
-
 
 class Walk(NamedTuple):
     """A walk along a branch in one direction.
@@ -114,7 +110,9 @@ def joined(back: Walk, ahead: Walk) -> list[Piece]:
     """Return the pieces of both walks in the direction of the second."""
     if back is ahead:
         return ahead.pieces
-    return [piece.reversed() for piece in reversed(back.pieces)] + ahead.pieces
+    *pieces, last = [piece.reversed() for piece in reversed(back.pieces)]
+    first, *others = ahead.pieces
+    return [*pieces, Piece(first.curve, chained(last.points[:-1], first.points)), *others]
 
 
 def points_of(pieces: list[Piece]) -> list[Point]:
@@ -140,7 +138,7 @@ def _walk(curve: Curve, start: Point, limits: Limits, longest: float) -> Walk:
             flip = _flip_at_end(curve, point)
             return Walk(pieces, HALVED if flip else f"the branch ends: {error}", flip)
         ahead, reason = _up_to_end(curve, point, ahead, start, limits)
-        pieces[-1] = pieces[-1].with_points(ahead)
+        pieces[-1] = Piece(curve, chained(pieces[-1].points, ahead))
         if reason:
             flip = _flip_at_end(curve, pieces[-1].points[-1]) if reason == HALVED else []
             return Walk(pieces, reason, flip)

@@ -7,6 +7,7 @@ not.
 
 from collections.abc import Callable, Iterator, Sequence
 from itertools import pairwise
+from math import isnan
 
 import numpy as np
 
@@ -20,7 +21,7 @@ Beside = Callable[[Point, float], Point]
 
 _OFFSET = 1e-5
 _NARROWEST = 1e-6  # piece of a branch; roots of one test closer than this are not separated
-_ROOT_WIDTH = 1e-13  # share of a piece
+_ROOT_WIDTH = 1e-13  # distance along a branch
 _KNOWN = 6  # values from which a root is predicted
 _MOST_PREDICTIONS = 6  # after these every second point halves the interval
 _MOST_POINTS = 100  # of a search
@@ -61,7 +62,7 @@ def zeros(
     while pieces:
         start, end = pieces.pop()
         before, after = test(start), test(end)
-        if np.isnan(before) or np.isnan(after):
+        if isnan(before) or isnan(after):
             continue
         if (before < 0.0) != (after < 0.0):
             found = (
@@ -128,10 +129,11 @@ def _locate(
     the function has different signs. Each point is predicted from the two nearest ones.
     """
     normal, length = left.tangent, length_between(left, right)
+    width = _ROOT_WIDTH / length
     known = [
         (value, float(normal @ (point.place - left.place)) / length, point)
         for point in (left, right, *around)
-        if not np.isnan(value := test(point))
+        if not isnan(value := test(point))
     ]
     (_, low, before), (value, high, after) = known[:2]
     rising = value >= 0.0
@@ -140,7 +142,7 @@ def _locate(
         if not low <= share <= high or (count > _MOST_PREDICTIONS and count % 2):
             share = 0.5 * (low + high)
         nearest = min(known, key=lambda one: abs(one[1] - share))
-        if abs(nearest[1] - share) < _ROOT_WIDTH:
+        if abs(nearest[1] - share) < width:
             break
         point = curve.between(before, after, normal, (share - low) / (high - low))
         value = test(point)

@@ -237,7 +237,8 @@ class Orbit:
     @cached_property
     def stiffness_jumps(self) -> np.ndarray:
         """The events at which C(t) jumps."""
-        return jumps_of(self.passage.events, segments_of(self.problem))
+        events = self.passage.events
+        return events[are_jumps(events, jumping_segments(segments_of(self.problem)))]
 
     @property
     def _turns(self) -> np.ndarray:
@@ -374,16 +375,15 @@ def extrema_of(events: np.ndarray) -> np.ndarray:
     return extrema
 
 
-def jumps_of(events: np.ndarray, segments: np.ndarray) -> np.ndarray:
-    """Return the events at which C(t) jumps, given the segments of `segments_of`."""
-    return events[are_jumps(events, segments)]
-
-
-def are_jumps(events: np.ndarray, segments: np.ndarray) -> np.ndarray:
-    """Return whether C(t) jumps at each event."""
+def jumping_segments(segments: np.ndarray) -> np.ndarray:
+    """Return whether C(t) jumps at the start of each of the segments of `segments_of`."""
     stiffness = segments[:, 1]
-    begins = stiffness != np.roll(stiffness, 1)
-    return (events[:, KIND] == SWITCH) & begins[events[:, SEGMENT].astype(int)]
+    return np.concatenate([stiffness[:1] != stiffness[-1:], stiffness[1:] != stiffness[:-1]])
+
+
+def are_jumps(events: np.ndarray, jumping: np.ndarray) -> np.ndarray:
+    """Return whether C(t) jumps at each event, given `jumping_segments`."""
+    return (events[:, KIND] == SWITCH) & jumping[events[:, SEGMENT].astype(int)]
 
 
 def newton_correction(moved: Passage, state: np.ndarray) -> np.ndarray:
