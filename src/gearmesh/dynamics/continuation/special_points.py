@@ -15,10 +15,17 @@ from gearmesh.dynamics.continuation.test_functions import (
     bifurcation_values,
     event_tests,
 )
-from gearmesh.dynamics.continuation.zeros import Beside, keeps_its_sign, length_between, zeros
+from gearmesh.dynamics.continuation.zeros import (
+    Around,
+    Beside,
+    keeps_its_sign,
+    length_between,
+    zeros,
+)
 from gearmesh.dynamics.periodic.shots import Motion, Shot
 from gearmesh.solvers.reduced.derivatives.variational import AFTER, BEFORE, VELOCITY
 
+_AROUND = 2  # points on each side of a piece that help to locate roots in it
 _NARROWEST_PIECE = 1e-11  # between two grazings, in which multipliers are tested
 _LARGEST_VALUE = 1e-7  # of a test function at its root: more is a jump
 _LEAST_SLOPE = 1e-6  # of the parameter along a branch at both sides of a fold
@@ -52,12 +59,9 @@ def search(
     right: Point,
     tests: list[Test],
     beside: Beside | None = None,
-    around: Sequence[Point] = (),
+    around: Around = ((), ()),
 ) -> list[tuple[str, Point]]:
-    """Return where tests pass 0 between two neighbouring points of a curve, in their order.
-
-    Near the points `around`, on both sides of the piece, the tests are as smooth as in the piece.
-    """
+    """Return where tests pass 0 between two neighbouring points of a curve, in their order."""
     beside = beside or cache(curve.beside)
     found = [
         (kind, point)
@@ -80,14 +84,16 @@ def special_points(
     between the grazings and not across them. Wherever an event is found, all of them are tested.
     """
     left, right, beside = points[i], points[i + 1], cache(curve.beside)
-    before = [points[i - 1]] if i > 0 else []
-    after = [points[i + 2]] if i + 2 < len(points) else []
-    around = [*before, *after]
+    before, after = (
+        [points[k] for k in range(max(first, 0), min(first + _AROUND, len(points)))]
+        for first in (i - _AROUND, i + 2)
+    )
     tests = event_tests(left, right, kinds)
-    events = _once(search(curve, left, right, tests, beside, around))
+    events = _once(search(curve, left, right, tests, beside, (before, after)))
     if not events:
         tests = [test for test in bifurcation_tests() if test[0] in kinds]
-        return search(curve, left, right, tests, beside, around)
+        return search(curve, left, right, tests, beside, (before, after))
+    before, after = before[-1:], after[:1]
     ends = [*before, left, *(point for _, point in events), right, *after]
     found, values = events, bifurcation_values(ends)
     for k in range(len(before), len(ends) - 1 - len(after)):

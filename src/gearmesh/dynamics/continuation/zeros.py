@@ -8,6 +8,7 @@ not.
 from collections.abc import Callable, Iterator, Sequence
 from itertools import pairwise
 from math import isnan
+from typing import NamedTuple
 
 import numpy as np
 
@@ -19,12 +20,16 @@ from gearmesh.errors import NoOrbit
 Beside = Callable[[Point, float], Point]
 """`Curve.beside` of a curve, which remembers the points."""
 
+Around = tuple[Sequence[Point], Sequence[Point]]
+"""Points before and after a piece, in their order, where functions are as smooth as in it."""
+
 _OFFSET = 1e-5
 _NARROWEST = 1e-6  # piece of a branch; roots of one test closer than this are not separated
 _ROOT_WIDTH = 1e-13  # distance along a branch
 _KNOWN = 6  # values from which a root is predicted
 _MOST_PREDICTIONS = 6  # after these every second point halves the interval
 _MOST_POINTS = 100  # of a search
+_MOST_CORRECTIONS = 50  # of the root of a polynomial
 _FAR = 2.0  # times its changes between points nearby: more than a function falls between two
 _NEAREST = 1e-10  # distance from an abrupt root that stands for it
 _SHARE = 0.99  # of the distance to such a root that a step passes
@@ -36,7 +41,7 @@ def zeros(
     right: Point,
     test: Function,
     beside: Beside,
-    around: Sequence[Point] = (),
+    around: Around = ((), ()),
     abrupt: bool = False,
 ) -> Iterator[tuple[Point, Point, Point]]:
     """Yield the points between two others where a function changes sign, and their neighbours.
@@ -48,30 +53,30 @@ def zeros(
     test : callable
     beside : callable
         As `Beside`.
-    around : sequence of Point
-        Points next to the piece, at which the function is as smooth as in it.
+    around : two sequences of Point
+        As `Around`.
     abrupt : bool
         Whether the function is known only where it is positive.
     """
-    if len(around) == 2 and keeps_its_sign(
-        [test(one) for one in (around[0], left, right, around[1])]
-    ):
+    before, after = around
+    nearest = *before[-1:], left, right, *after[:1]
+    if keeps_its_sign([test(point) for point in nearest]):
         return
     offset = min(_OFFSET, 0.1 * length_between(left, right))
     pieces = [(left, right)]
     while pieces:
         start, end = pieces.pop()
-        before, after = test(start), test(end)
-        if isnan(before) or isnan(after):
+        values = test(start), test(end)
+        if any(map(isnan, values)):
             continue
-        if (before < 0.0) != (after < 0.0):
+        if (values[0] < 0.0) != (values[1] < 0.0):
             found = (
                 _approach(curve, start, end, test)
                 if abrupt
-                else _locate(curve, start, end, test, around)
+                else _locate(curve, start, end, test, [*before, *after])
             )
             yield start, found, end
-        elif _may_dip(test, (start, before), (end, after), beside, offset):
+        elif _may_dip(test, (start, values[0]), (end, values[1]), beside, offset):
             middle = curve.between(start, end, start.tangent, 0.5)
             pieces += [(start, middle), (middle, end)]
 
@@ -125,52 +130,70 @@ def _locate(
 ) -> Point:
     """Return the point between two others where a test function passes 0.
 
-    Its place is predicted again and again from the values nearest to 0, between two points where
-    the function has different signs. Each point is predicted from the two nearest ones.
+    A polynomial through the values that are known nearby predicts the root, again and again.
     """
     normal, length = left.tangent, length_between(left, right)
-    width = _ROOT_WIDTH / length
-    known = [
-        (value, float(normal @ (point.place - left.place)) / length, point)
+    low, high, *others = [
+        _Known(float(normal @ (point.place - left.place)) / length, value, point)
         for point in (left, right, *around)
         if not isnan(value := test(point))
     ]
-    (_, low, before), (value, high, after) = known[:2]
-    rising = value >= 0.0
     for count in range(_MOST_POINTS):
-        share = _root(sorted(known, key=_size)[:_KNOWN])
-        if not low <= share <= high or (count > _MOST_PREDICTIONS and count % 2):
-            share = 0.5 * (low + high)
-        nearest = min(known, key=lambda one: abs(one[1] - share))
-        if abs(nearest[1] - share) < width:
-            break
-        point = curve.between(before, after, normal, (share - low) / (high - low))
+        others = sorted(others, key=_size)[: _KNOWN - 2]
+        halved = count > _MOST_PREDICTIONS and count % 2
+        share = 0.5 * (low.share + high.share) if halved else _root([low, high, *others])
+        nearest = min((low, high), key=lambda known: abs(known.share - share))
+        if abs(nearest.share - share) * length < _ROOT_WIDTH:
+            return nearest.point
+        part = (share - low.share) / (high.share - low.share)
+        point = curve.between(low.point, high.point, normal, part)
         value = test(point)
-        nearest = value, share, point
         if not abs(value) > 0.0:
-            break
-        known.append(nearest)
-        if (value >= 0.0) == rising:
-            high, after = share, point
+            return point
+        if (value < 0.0) == (low.value < 0.0):
+            others, low = [*others, low], _Known(share, value, point)
         else:
-            low, before = share, point
-    return nearest[2]
+            others, high = [*others, high], _Known(share, value, point)
+    return nearest.point
 
 
-def _root(known: list[tuple[float, float, Point]]) -> float:
-    """Return where a polynomial, which gives the share as a function of the value, is at 0."""
-    values, shares = [one[0] for one in known], [one[1] for one in known]
+class _Known(NamedTuple):
+    """A point of a piece, how far along it is, and the value of a function there."""
+
+    share: float
+    value: float
+    point: Point
+
+
+def _size(known: _Known) -> float:
+    return abs(known.value)
+
+
+def _root(known: list[_Known]) -> float:
+    """Return the root between the first two places of the polynomial through all of them."""
+    shares = [one.share for one in known]
+    factors = [one.value for one in known]
     for order in range(1, len(known)):
-        for i in range(len(known) - order):
-            change = values[i] - values[i + order]
-            if change == 0.0:
-                return float("nan")
-            shares[i] += values[i] * (shares[i + 1] - shares[i]) / change
-    return shares[0]
-
-
-def _size(known: tuple[float, float, Point]) -> float:
-    return abs(known[0])
+        for i in range(len(known) - 1, order - 1, -1):
+            factors[i] = (factors[i] - factors[i - 1]) / (shares[i] - shares[i - order])
+    low, high = shares[:2]
+    falls = known[0].value > known[1].value
+    share = low - known[0].value / factors[1]
+    for _ in range(_MOST_CORRECTIONS):
+        value, slope = factors[-1], 0.0
+        for factor, other in zip(factors[-2::-1], shares[-2::-1], strict=True):
+            value, slope = value * (share - other) + factor, slope * (share - other) + value
+        if (value > 0.0) == falls:
+            low = share
+        else:
+            high = share
+        following = share - value / slope if slope != 0.0 else low
+        if not low < following < high:
+            following = 0.5 * (low + high)
+        if abs(following - share) < _ROOT_WIDTH:
+            break
+        share = following
+    return share
 
 
 def _approach(curve: Curve, left: Point, right: Point, test: Function) -> Point:
