@@ -58,9 +58,10 @@ def linear_orbit(problem: Problem) -> np.ndarray:
     Only the linear damping of the material acts. The equations are then linear, and a matrix
     exponential for each segment of the mesh period solves them.
     """
+    rates = [linear_rates(problem, c, g) * length for length, c, g in segments_of(problem).tolist()]
     whole = np.eye(5)
-    for length, c, g in segments_of(problem):
-        whole = expm(linear_rates(problem, c, g) * length) @ whole
+    for passed in expm(np.array(rates)):
+        whole = passed @ whole
     return np.linalg.solve(np.eye(4) - whole[:4, :4], whole[:4, 4])
 
 

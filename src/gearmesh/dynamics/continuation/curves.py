@@ -66,8 +66,10 @@ class Curve:
         """Compiled code that finds the points, if the problems differ in nu alone."""
         if self.condition is not None or not self.stretches or not isinstance(self.like, Orbit):
             return None
-        problem = self._problem((self.like.problem.nu,))
-        return Tracer(replace(problem, initial_state=None), self.periods, self.units[0])
+        problem = self.like.problem
+        if problem.initial_phase != self.phase:
+            problem = replace(problem, initial_phase=self.phase)
+        return Tracer(problem, self.periods, self.units[0])
 
     @property
     def gap_moves(self) -> bool:

@@ -9,7 +9,7 @@ import numpy as np
 from gearmesh.dynamics.periodic.shots import Motion, Shot
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(eq=False)
 class Point:
     """A point of a curve of orbits.
 

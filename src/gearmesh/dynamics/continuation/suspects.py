@@ -13,7 +13,6 @@ from gearmesh.dynamics.continuation.kinds import BIFURCATIONS, GRAZINGS
 from gearmesh.dynamics.continuation.points import Point
 from gearmesh.dynamics.continuation.test_functions import BACK, FRONT, bifurcation_values
 from gearmesh.dynamics.continuation.tracing import Track
-from gearmesh.dynamics.periodic.orbits import are_jumps
 from gearmesh.solvers.reduced.derivatives import curves
 from gearmesh.solvers.reduced.derivatives.variational import (
     AFTER,
@@ -22,6 +21,8 @@ from gearmesh.solvers.reduced.derivatives.variational import (
     EVENT_SIZE,
     HEIGHT,
     KIND,
+    SEGMENT,
+    SWITCH,
     TURN,
     VELOCITY,
 )
@@ -101,7 +102,8 @@ def _of_track(track: Track) -> _Events:
     levels = np.array([[0.0], [-tracer.problem.backlash]])
     away = np.where(kind == TURN, np.abs(height - levels), np.inf)
     passes = (kind == CROSSING) & (height == levels)
-    jumps = events[are_jumps(events, tracer.jumping)].reshape(len(track), -1, EVENT_SIZE).T
+    jumping = (kind == SWITCH) & tracer.jumping[events[:, SEGMENT].astype(int)]
+    jumps = events[jumping].reshape(len(track), -1, EVENT_SIZE).T
     return _Events(
         np.minimum.reduceat(away, first, axis=1),
         _counting(jumps[VELOCITY], jumps[BEFORE] * jumps[AFTER] < 0.0),

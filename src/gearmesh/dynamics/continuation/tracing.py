@@ -8,7 +8,7 @@ from typing import overload
 import numpy as np
 
 from gearmesh.dynamics.continuation.points import Point
-from gearmesh.dynamics.periodic.orbits import Orbit, are_jumps, extrema_of, jumping_segments
+from gearmesh.dynamics.periodic.orbits import Orbit, extrema_of, jumping_segments, jumps_of
 from gearmesh.errors import NoOrbit
 from gearmesh.model.problem import Problem
 from gearmesh.solvers.reduced.derivatives import curves
@@ -71,7 +71,7 @@ class Tracer:
         row = points[0]
         if row[curves.OUTCOME] != COMPLETE:
             raise NoOrbit(f"the motion ends with {STATUSES[int(row[curves.OUTCOME])]}")
-        residual = np.abs(row[curves.END : curves.JACOBIAN] - row[:SIZE]).max()
+        residual = max(map(abs, (row[curves.END : curves.JACOBIAN] - row[:SIZE]).tolist()))
         if corrections and not residual < LARGEST_RESIDUAL:
             raise NoOrbit(f"the corrector stops at a residual of {residual:.1e}")
         if row[curves.TANGENT : curves.DETERMINANT] @ along < 0.0:
@@ -121,7 +121,7 @@ class Tracer:
         )
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(eq=False)
 class _Traced:
     """A motion that compiled code found, with the names of `Motion`."""
 
@@ -163,7 +163,7 @@ class _Traced:
 
     @cached_property
     def stiffness_jumps(self) -> np.ndarray:
-        return self.events[are_jumps(self.events, self.tracer.jumping)]
+        return jumps_of(self.events, self.tracer.jumping)
 
     @property
     def y(self) -> float:

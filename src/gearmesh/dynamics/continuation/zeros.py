@@ -183,16 +183,12 @@ def _root(known: list[_Known]) -> float:
         value, slope = factors[-1], 0.0
         for factor, other in zip(factors[-2::-1], shares[-2::-1], strict=True):
             value, slope = value * (share - other) + factor, slope * (share - other) + value
-        if (value > 0.0) == falls:
-            low = share
-        else:
-            high = share
-        following = share - value / slope if slope != 0.0 else low
-        if not low < following < high:
-            following = 0.5 * (low + high)
-        if abs(following - share) < _ROOT_WIDTH:
+        if abs(value) <= _ROOT_WIDTH * abs(slope):
             break
-        share = following
+        low, high = (share, high) if (value > 0.0) == falls else (low, share)
+        share -= value / slope if slope != 0.0 else np.inf
+        if not low < share < high:
+            share = 0.5 * (low + high)
     return share
 
 

@@ -103,14 +103,19 @@ class Orbit:
         The least period n, in mesh periods.
     state : ndarray, shape (4,)
         y, y', b, b' at `Problem.initial_phase`.
-    passage : Passage
-        The motion over the period of the orbit.
+    known : Passage, optional
+        The motion over the period of the orbit, if it is known already.
     """
 
     problem: Problem
     periods: int
     state: np.ndarray
-    passage: Passage = field(repr=False)
+    known: Passage | None = field(default=None, repr=False)
+
+    @cached_property
+    def passage(self) -> Passage:
+        """The motion over the period of the orbit."""
+        return self.known or passage(self.problem, self.state, self.periods)
 
     @property
     def repeats_after(self) -> int:
@@ -237,8 +242,7 @@ class Orbit:
     @cached_property
     def stiffness_jumps(self) -> np.ndarray:
         """The events at which C(t) jumps."""
-        events = self.passage.events
-        return events[are_jumps(events, jumping_segments(segments_of(self.problem)))]
+        return jumps_of(self.passage.events, jumping_segments(segments_of(self.problem)))
 
     @property
     def _turns(self) -> np.ndarray:
@@ -295,7 +299,7 @@ class Orbit:
             return self
         state = advance(self.problem, self.state, share)
         problem = replace(self.problem, initial_phase=phase)
-        return Orbit(problem, self.periods, state, passage(problem, state, self.periods))
+        return Orbit(problem, self.periods, state)
 
     def time_course(self, samples_per_period: int = 256) -> TimeCourse:
         """Return the time course, with `samples_per_period` samples in a mesh period."""
@@ -370,20 +374,26 @@ def correct(problem: Problem, state: np.ndarray, periods: int = 1) -> Orbit:
 
 def extrema_of(events: np.ndarray) -> np.ndarray:
     """Return the extrema among the events of a passage, as of `Orbit.extrema`."""
-    extrema = events[events[:, KIND] == TURN][:, [TIME, HEIGHT, AFTER]]
-    extrema[:, 2] = -np.sign(extrema[:, 2])
-    return extrema
+    found = [  # for the few events of one passage a list is faster than array operations
+        (event[TIME], event[HEIGHT], (event[AFTER] < 0.0) - (event[AFTER] > 0.0))
+        for event in events.tolist()
+        if event[KIND] == TURN
+    ]
+    return np.array(found, float).reshape(-1, 3)
+
+
+def jumps_of(events: np.ndarray, jumping: np.ndarray) -> np.ndarray:
+    """Return the events at which C(t) jumps, given `jumping_segments`."""
+    found = [
+        event for event in events.tolist() if event[KIND] == SWITCH and jumping[int(event[SEGMENT])]
+    ]
+    return np.array(found, float).reshape(-1, events.shape[1])
 
 
 def jumping_segments(segments: np.ndarray) -> np.ndarray:
     """Return whether C(t) jumps at the start of each of the segments of `segments_of`."""
     stiffness = segments[:, 1]
-    return np.concatenate([stiffness[:1] != stiffness[-1:], stiffness[1:] != stiffness[:-1]])
-
-
-def are_jumps(events: np.ndarray, jumping: np.ndarray) -> np.ndarray:
-    """Return whether C(t) jumps at each event, given `jumping_segments`."""
-    return (events[:, KIND] == SWITCH) & jumping[events[:, SEGMENT].astype(int)]
+    return stiffness != np.roll(stiffness, 1)
 
 
 def newton_correction(moved: Passage, state: np.ndarray) -> np.ndarray:
