@@ -7,6 +7,7 @@ from functools import cache
 from itertools import combinations
 
 from gearmesh.dynamics.continuation.curves import Curve
+from gearmesh.dynamics.continuation.kinds import GRAZINGS
 from gearmesh.dynamics.continuation.points import Point
 from gearmesh.dynamics.continuation.test_functions import (
     Function,
@@ -81,7 +82,7 @@ def special_points(
     """Return the special points of some kinds between points i and i + 1, in their order.
 
     Multipliers have a root singularity where the orbit grazes, so they are tested in the pieces
-    between the grazings and not across them. Wherever an event is found, all of them are tested.
+    between the grazings and not across them. Wherever an orbit grazes, all of them are tested.
     """
     left, right, beside = points[i], points[i + 1], cache(curve.beside)
     before, after = (
@@ -90,11 +91,13 @@ def special_points(
     )
     tests = event_tests(left, right, kinds)
     events = _once(search(curve, left, right, tests, beside, (before, after)))
-    if not events:
+    grazings = [point for kind, point in events if kind in GRAZINGS]
+    if not grazings:
         tests = [test for test in bifurcation_tests() if test[0] in kinds]
-        return search(curve, left, right, tests, beside, (before, after))
+        found = search(curve, left, right, tests, beside, (before, after)) if tests else []
+        return _in_order(left, events + found)
     before, after = before[-1:], after[:1]
-    ends = [*before, left, *(point for _, point in events), right, *after]
+    ends = [*before, left, *grazings, right, *after]
     found, values = events, bifurcation_values(ends)
     for k in range(len(before), len(ends) - 1 - len(after)):
         start, end = ends[k : k + 2]
@@ -105,7 +108,7 @@ def special_points(
                 for test, four in zip(bifurcation_tests(), nearby, strict=True)
                 if not keeps_its_sign(four, smooth=False)
             ]
-            found = found + search(curve, start, end, tests, beside)
+            found = found + (search(curve, start, end, tests, beside) if tests else [])
     return _in_order(left, found)
 
 
