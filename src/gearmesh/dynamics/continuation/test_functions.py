@@ -2,7 +2,6 @@
 
 import operator
 from collections.abc import Callable, Sequence
-from functools import lru_cache
 
 import numpy as np
 
@@ -11,6 +10,7 @@ from gearmesh.dynamics.continuation.points import Point
 from gearmesh.dynamics.continuation.tracing import Track, monodromies
 from gearmesh.dynamics.periodic.shots import Motion
 from gearmesh.solvers.reduced.derivatives import curves
+from gearmesh.solvers.reduced.derivatives.multipliers import products
 from gearmesh.solvers.reduced.derivatives.variational import AFTER, BEFORE, VELOCITY
 
 Function = Callable[[Point], float]
@@ -51,13 +51,13 @@ def bifurcation_values(points: Sequence[Point]) -> np.ndarray:
         determinants = np.array([point.determinant for point in points])
         matrices = np.array([point.motion.monodromy for point in points])
         undamped = np.array([point.motion.undamped for point in points])
-    pairs = np.where(undamped, np.nan, product_of_pairs(matrices))
-    return np.array([slopes, determinants, _product_plus_one(matrices), pairs])
+    flips, pairs = products(matrices)
+    return np.array([slopes, determinants, flips, np.where(undamped, np.nan, pairs)])
 
 
 def flip_test(orbit: Motion) -> float:
     """Return the product of all mu_i + 1."""
-    return float(_product_plus_one(orbit.monodromy))
+    return float(products(orbit.monodromy[None])[0, 0])
 
 
 def torus_test(orbit: Motion) -> float:
@@ -66,34 +66,7 @@ def torus_test(orbit: Motion) -> float:
     Without damping in the mesh a pair may be there all along the branch; the result is then
     not-a-number.
     """
-    return float("nan") if orbit.undamped else float(product_of_pairs(orbit.monodromy))
-
-
-def _product_plus_one(matrices: np.ndarray) -> np.ndarray:
-    found: np.ndarray = np.linalg.det(matrices + np.eye(matrices.shape[-1]))
-    return found
-
-
-def product_of_pairs(matrices: np.ndarray) -> np.ndarray:
-    """Return, for each matrix, the product of mu_i mu_k - 1 over all pairs of eigenvalues mu.
-
-    The products mu_i mu_k are the eigenvalues of the second compound matrix, of the minors of
-    order two.
-    """
-    upper, lower, left, right, unit = _minors(matrices.shape[-1])
-    compound = (
-        matrices[..., upper, left] * matrices[..., lower, right]
-        - matrices[..., upper, right] * matrices[..., lower, left]
-    )
-    found: np.ndarray = np.linalg.det(compound - unit)
-    return found
-
-
-@lru_cache
-def _minors(size: int) -> tuple[np.ndarray, ...]:
-    """Return upper and lower rows, left and right columns of minors, and a unit matrix."""
-    i, k = np.triu_indices(size, 1)
-    return i[:, None], k[:, None], i, k, np.eye(i.size)
+    return float("nan") if orbit.undamped else float(products(orbit.monodromy[None])[1, 0])
 
 
 def event_tests(left: Point, right: Point, kinds: set[str]) -> list[Test]:

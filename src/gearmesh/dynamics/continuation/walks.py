@@ -163,11 +163,13 @@ def _up_to_end(
             ahead, reason = ahead[: turned.index(True)], HALVED
     if ahead and not _is_inside(ahead[-1], limits):
         ahead, outside, reason = ahead[:-1], ahead[-1], LIMIT
-    below = np.append(point.values[0], first_values(ahead)) < start.values[0]
-    for i in np.flatnonzero(np.diff(below)).tolist():
-        before = ahead[i - 1] if i else point
-        if before is not start and _is_back(curve, before, ahead[i], start):
-            return ahead[: i + 1], CLOSED
+    value = start.values[0]
+    below = [point.values[0] < value, *(first_values(ahead) < value).tolist()]
+    for i in range(len(ahead)):
+        if below[i] != below[i + 1]:
+            before = ahead[i - 1] if i else point
+            if before is not start and _is_back(curve, before, ahead[i], start):
+                return ahead[: i + 1], CLOSED
     if outside is not None:
         end = _at_limit(curve, ahead[-1] if ahead else point, outside, limits)
         ahead = chained(ahead, end)

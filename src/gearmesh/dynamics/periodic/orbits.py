@@ -354,7 +354,8 @@ def correct(problem: Problem, state: np.ndarray, periods: int = 1) -> Orbit:
     NoOrbit
         If it does not converge, or leads to an orbit of a shorter period.
     """
-    problem = replace(problem, initial_state=None)
+    if problem.initial_state is not None:
+        problem = replace(problem, initial_state=None)
     stated = statement(problem, periods)
     place = np.append(state, 1.0)
     points, events, _ = trace(stated, place, FIXED, problem.nu, _MOST_CORRECTIONS)
