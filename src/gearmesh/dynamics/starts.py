@@ -1,5 +1,6 @@
 """Initial states for the search for orbits."""
 
+import math
 from collections.abc import Iterator
 from dataclasses import replace
 from itertools import product
@@ -11,6 +12,8 @@ from gearmesh.model.motion import state_at
 from gearmesh.model.problem import Problem, State
 from gearmesh.solvers.reduced.derivatives.period_map import segments_of
 from gearmesh.solvers.simulation import simulate
+
+Values = float | np.ndarray
 
 _TRANSIENT = 40
 """Revolutions after which the end of a run serves as an initial state."""
@@ -58,29 +61,36 @@ def linear_orbit(problem: Problem) -> np.ndarray:
     Only the linear damping of the material acts. The equations are then linear, and a matrix
     exponential for each segment of the mesh period solves them.
     """
-    rates = [linear_rates(problem, c, g) * length for length, c, g in segments_of(problem).tolist()]
+    lengths, c, g = segments_of(problem).T
     whole = np.eye(5)
-    for passed in expm(np.array(rates)):
+    for passed in expm(linear_rates(problem, c, g) * lengths[:, None, None]):
         whole = passed @ whole
     return np.linalg.solve(np.eye(4) - whole[:4, :4], whole[:4, 4])
 
 
-def linear_rates(problem: Problem, c: float, g: float) -> np.ndarray:
-    """Return the matrix of the linear equations of (y, y', b, b', 1) in normal mesh.
+def linear_rates(problem: Problem, c: Values, g: Values) -> np.ndarray:
+    """Return the matrices of the linear equations of (y, y', b, b', 1) in normal mesh.
 
     Parameters
     ----------
     problem : Problem
         Only the linear damping of the material counts.
-    c, g : float
+    c, g : float, or ndarray of shape (n,)
         C/C_s, and friction's share of the elastic force.
+
+    Returns
+    -------
+    ndarray, shape (5, 5) or (n, 5, 5)
     """
-    two_mu = 2.0 / problem.body_mass
+    two_mu, damper = 2.0 / problem.body_mass, problem.material[0]
     support = problem.bearing_stiffness / problem.body_mass
-    damped = 2.0 * problem.bearing_damping_ratio * np.sqrt(support)
-    mesh = np.array([c, problem.material[0], 0.0, 0.0, 0.0])  # N of (y, y', b, b', 1)
-    rates = np.zeros((5, 5))
-    rates[0, 1] = rates[2, 3] = 1.0
-    rates[3] = -two_mu * mesh - np.array([0.0, 0.0, support, damped, 0.0])
-    rates[1] = rates[3] - mesh + np.array([g * c, 0.0, 0.0, 0.0, 1.0])
+    damped = 2.0 * problem.bearing_damping_ratio * math.sqrt(support)
+    rates = np.zeros((*np.shape(c), 5, 5))
+    rates[..., 0, 1] = rates[..., 2, 3] = rates[..., 1, 4] = 1.0
+    rates[..., 3, 0] = -two_mu * c
+    rates[..., 3, 1] = -two_mu * damper
+    rates[..., [1, 3], 2] = -support
+    rates[..., [1, 3], 3] = -damped
+    rates[..., 1, 0] = rates[..., 3, 0] - c + g * c
+    rates[..., 1, 1] = rates[..., 3, 1] - damper
     return rates

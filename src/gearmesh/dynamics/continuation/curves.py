@@ -159,11 +159,12 @@ class Curve:
         `normal`, which must be close to both tangents. A cubic polynomial through both points, with
         their tangents, predicts the new point.
         """
-        length = float(normal @ (right.place - left.place))
-        ahead, behind = (length / (one.tangent @ normal) * one.tangent for one in (left, right))
-        apart = right.place - left.place
-        bend = share * (1.0 - share) * ((1.0 - share) * (ahead - apart) - share * (behind - apart))
-        return self.point(left.place + share * apart + bend, normal, left.tangent)
+        apart, rest = right.place - left.place, 1.0 - share
+        length = float(normal @ apart) * share * rest
+        ahead, behind = length / (left.tangent @ normal), length / (right.tangent @ normal)
+        bend = rest * ahead * left.tangent - share * behind * right.tangent
+        place = left.place + share * share * (3.0 - 2.0 * share) * apart + bend
+        return self.point(place, normal, left.tangent)
 
     def step(self, point: Point, length: float) -> Point:
         """Return the point one step ahead along the tangent."""

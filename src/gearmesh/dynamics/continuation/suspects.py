@@ -52,8 +52,8 @@ def suspects(points: Sequence[Point]) -> list[tuple[int, set[str]]]:
         nearby[:, 1:] = np.fmax(nearby[:, 1:], np.abs(change[:, :-1]))
         nearby[:, :-1] = np.fmax(nearby[:, :-1], np.abs(change[:, 1:]))
         near = np.fmin(np.abs(left), np.abs(right)) < _MARGIN * nearby
-        same = np.sign(change[:, 1:]) == np.sign(change[:, :-1])
-        near[:, 1:-1] &= ~(same[:, 1:] & same[:, :-1])
+        on = change[:, 1:] * change[:, :-1] > 0.0
+        near[:, 1:-1] &= ~(on[:, 1:] & on[:, :-1])
         near |= left * right <= 0.0
     first = len(BIFURCATIONS)
     near[first : first + len(GRAZINGS)] |= events.beyond[:, 1:] != events.beyond[:, :-1]
