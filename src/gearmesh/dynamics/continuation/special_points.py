@@ -17,7 +17,6 @@ from gearmesh.dynamics.continuation.test_functions import (
     event_tests,
 )
 from gearmesh.dynamics.continuation.zeros import (
-    Around,
     Beside,
     keeps_its_sign,
     length_between,
@@ -60,14 +59,13 @@ def search(
     right: Point,
     tests: list[Test],
     beside: Beside | None = None,
-    around: Around = ((), ()),
+    around: Sequence[Point] = (),
 ) -> list[tuple[str, Point]]:
     """Return where tests pass 0 between two neighbouring points of a curve, in their order."""
     beside = beside or cache(curve.beside)
     found = [
         (kind, point)
-        for kind, uncached in tests
-        for test in (cache(uncached),)
+        for kind, test in tests
         for start, point, end in zeros(
             curve, left, right, test, beside, around, kind == "grazing_back" and curve.gap_moves
         )
@@ -89,12 +87,18 @@ def special_points(
         [points[k] for k in range(max(first, 0), min(first + _AROUND, len(points)))]
         for first in (i - _AROUND, i + 2)
     )
-    tests = event_tests(left, right, kinds)
-    events = _once(search(curve, left, right, tests, beside, (before, after)))
+    around = [*before, *after]
+    nearby = [*before[-1:], left, right, *after[:1]]
+    tests = [
+        (kind, test)
+        for kind, test in event_tests(left, right, kinds)
+        if not keeps_its_sign([test(point) for point in nearby])
+    ]
+    events = _once(search(curve, left, right, tests, beside, around) if tests else [])
     grazings = [point for kind, point in events if kind in GRAZINGS]
     if not grazings:
         tests = [test for test in bifurcation_tests() if test[0] in kinds]
-        found = search(curve, left, right, tests, beside, (before, after)) if tests else []
+        found = search(curve, left, right, tests, beside, around) if tests else []
         return _in_order(left, events + found)
     before, after = before[-1:], after[:1]
     ends = [*before, left, *grazings, right, *after]
@@ -102,10 +106,10 @@ def special_points(
     for k in range(len(before), len(ends) - 1 - len(after)):
         start, end = ends[k : k + 2]
         if length_between(start, end) > _NARROWEST_PIECE:
-            nearby = values[:, max(k - 1, 0) : k + 3].tolist()
+            fours = values[:, max(k - 1, 0) : k + 3].tolist()
             tests = [
                 test
-                for test, four in zip(bifurcation_tests(), nearby, strict=True)
+                for test, four in zip(bifurcation_tests(), fours, strict=True)
                 if not keeps_its_sign(four, smooth=False)
             ]
             found = found + (search(curve, start, end, tests, beside) if tests else [])

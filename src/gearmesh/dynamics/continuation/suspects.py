@@ -35,9 +35,9 @@ def suspects(points: Sequence[Point]) -> list[tuple[int, set[str]]]:
 
     A piece of the branch is suspect if a test function changes sign in it. It is also suspect if a
     test function may cross 0 twice in it, that is, if its value at an end is less than `_MARGIN`
-    times its change nearby and it does not rise or fall all along. All test functions are computed
-    for all points at once, so only the suspect pieces need a closer look. The kinds that may lie
-    there are returned with each i.
+    times its change nearby. A function that rises or falls all along, without a grazing nearby,
+    does not cross 0 twice. All test functions are computed for all points at once, so only the
+    suspect pieces need a closer look. The kinds that may lie there are returned with each i.
     """
     if isinstance(points, Track) and all(map(len, points.events)):
         events = _of_track(points)
@@ -46,17 +46,21 @@ def suspects(points: Sequence[Point]) -> list[tuple[int, set[str]]]:
     functions = np.concatenate([bifurcation_values(points), events.heights, events.velocities])
     kinds = [*BIFURCATIONS, *GRAZINGS, *["switching"] * len(events.velocities)]
     left, right = functions[:, :-1], functions[:, 1:]
+    heights = slice(len(BIFURCATIONS), len(BIFURCATIONS) + len(GRAZINGS))
+    passes = events.beyond[:, 1:] != events.beyond[:, :-1]
+    grazes = passes.any(axis=0)
     with np.errstate(invalid="ignore"):
         change = right - left
         nearby = np.abs(change)
         nearby[:, 1:] = np.fmax(nearby[:, 1:], np.abs(change[:, :-1]))
         nearby[:, :-1] = np.fmax(nearby[:, :-1], np.abs(change[:, 1:]))
         near = np.fmin(np.abs(left), np.abs(right)) < _MARGIN * nearby
-        on = change[:, 1:] * change[:, :-1] > 0.0
-        near[:, 1:-1] &= ~(on[:, 1:] & on[:, :-1])
+        goes_on = change[:, 1:] * change[:, :-1] > 0.0
+        goes_on[heights] = False
+        goes_on[:, grazes[1:] | grazes[:-1]] = False
+        near[:, 1:-1] &= ~(goes_on[:, 1:] & goes_on[:, :-1])
         near |= left * right <= 0.0
-    first = len(BIFURCATIONS)
-    near[first : first + len(GRAZINGS)] |= events.beyond[:, 1:] != events.beyond[:, :-1]
+    near[heights] |= passes
     found: dict[int, set[str]] = {}
     for i, k in np.argwhere(near.T).tolist():
         found.setdefault(i, set()).add(kinds[k])
@@ -69,7 +73,7 @@ class _Events(NamedTuple):
     Attributes
     ----------
     heights : ndarray, shape (2, n)
-        The heights of the extrema of y that are nearest to the ends of regimes, front and back.
+        The least distances between extrema of y and the ends of regimes, front and back.
     velocities : ndarray, shape (m, n)
         The velocities where C(t) jumps. Such a velocity counts only if y'' changes sign at the
         jump, at this point or a neighbouring one; otherwise it is not-a-number.
@@ -90,7 +94,7 @@ def _of_points(points: Sequence[Point]) -> _Events:
     events = np.array([one[:fewest] for one in jumps])
     turning = events[:, :, BEFORE] * events[:, :, AFTER] < 0.0
     return _Events(
-        np.array([[min(h, key=abs, default=np.inf) for h in heights] for heights in both]),
+        np.array([[np.abs(h).min(initial=np.inf) for h in heights] for heights in both]),
         _counting(events[:, :, VELOCITY].T, turning.T),
         np.array([[(h < 0.0).sum() for h in heights] for heights in both]),
     )
@@ -102,14 +106,12 @@ def _of_track(track: Track) -> _Events:
     events, first = np.concatenate(track.events), np.cumsum(counts) - counts
     kind, height = events[:, KIND], events[:, HEIGHT]
     levels = np.array([[0.0], [-tracer.problem.backlash]])
-    away, turns = height - levels, kind == TURN
-    above = np.minimum.reduceat(np.where(turns & (away >= 0.0), away, np.inf), first, axis=1)
-    below = np.maximum.reduceat(np.where(turns & (away < 0.0), away, -np.inf), first, axis=1)
+    away = np.where(kind == TURN, np.abs(height - levels), np.inf)
     passes = (kind == CROSSING) & (height == levels)
     jumping = (kind == SWITCH) & tracer.jumping[events[:, SEGMENT].astype(int)]
     jumps = events[jumping].reshape(len(track), -1, EVENT_SIZE).T
     return _Events(
-        np.where(above <= -below, above, below),
+        np.minimum.reduceat(away, first, axis=1),
         _counting(jumps[VELOCITY], jumps[BEFORE] * jumps[AFTER] < 0.0),
         np.add.reduceat(passes, first, axis=1, dtype=int),
     )

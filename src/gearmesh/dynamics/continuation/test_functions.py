@@ -2,6 +2,7 @@
 
 import operator
 from collections.abc import Callable, Sequence
+from functools import cache
 
 import numpy as np
 
@@ -14,7 +15,7 @@ from gearmesh.solvers.reduced.derivatives.multipliers import products
 from gearmesh.solvers.reduced.derivatives.variational import AFTER, BEFORE, VELOCITY
 
 Function = Callable[[Point], float]
-"""A function of the points of a branch."""
+"""A function of the points of a branch, which remembers its values."""
 
 Test = tuple[str, Function]
 """A kind, and a function that passes 0 at special points of this kind."""
@@ -34,8 +35,8 @@ def bifurcation_tests() -> list[Test]:
     tests: tuple[Function, ...] = (
         operator.attrgetter("slope"),
         operator.attrgetter("determinant"),
-        lambda point: flip_test(point.motion),
-        lambda point: torus_test(point.motion),
+        cache(lambda point: flip_test(point.motion)),
+        cache(lambda point: torus_test(point.motion)),
     )
     return list(zip(BIFURCATIONS, tests, strict=True))
 
@@ -99,7 +100,7 @@ def _height(extrema: Extrema, phase: float, kind: float) -> Function:
                 found, best = y, away
         return found
 
-    return height
+    return cache(height)
 
 
 def _velocity_at(number: int) -> Function:
@@ -109,4 +110,4 @@ def _velocity_at(number: int) -> Function:
         jumps = point.motion.stiffness_jumps
         return float(jumps[number, VELOCITY]) if number < len(jumps) else float("nan")
 
-    return velocity
+    return cache(velocity)

@@ -20,12 +20,10 @@ from gearmesh.errors import NoOrbit
 Beside = Callable[[Point, float], Point]
 """`Curve.beside` of a curve, which remembers the points."""
 
-Around = tuple[Sequence[Point], Sequence[Point]]
-"""Points before and after a piece, in their order, where functions are as smooth as in it."""
-
 _OFFSET = 1e-5
 _NARROWEST = 1e-6  # piece of a branch; roots of one test closer than this are not separated
 _ROOT_WIDTH = 1e-13  # distance along a branch
+_RESOLUTION = 1e-6  # share of a piece; in less of it, rounding errors may hide a change
 _KNOWN = 6  # values from which a root is predicted
 _MOST_PREDICTIONS = 6  # after these every second point halves the interval
 _MOST_POINTS = 100  # of a search
@@ -41,7 +39,7 @@ def zeros(
     right: Point,
     test: Function,
     beside: Beside,
-    around: Around = ((), ()),
+    around: Sequence[Point] = (),
     abrupt: bool = False,
 ) -> Iterator[tuple[Point, Point, Point]]:
     """Yield the points between two others where a function changes sign, and their neighbours.
@@ -53,15 +51,11 @@ def zeros(
     test : callable
     beside : callable
         As `Beside`.
-    around : two sequences of Point
-        As `Around`.
+    around : sequence of Point
+        Other points nearby, which help to predict roots.
     abrupt : bool
         Whether the function is known only where it is positive.
     """
-    before, after = around
-    nearest = *before[-1:], left, right, *after[:1]
-    if keeps_its_sign([test(point) for point in nearest]):
-        return
     offset = min(_OFFSET, 0.1 * length_between(left, right))
     pieces = [(left, right)]
     while pieces:
@@ -73,7 +67,7 @@ def zeros(
             found = (
                 _approach(curve, start, end, test)
                 if abrupt
-                else _locate(curve, start, end, test, [*before, *after])
+                else _locate(curve, start, end, test, around)
             )
             yield start, found, end
         elif _may_dip(test, (start, values[0]), (end, values[1]), beside, offset):
@@ -138,22 +132,29 @@ def _locate(
         for point in (left, right, *around)
         if not isnan(value := test(point))
     ]
+    least = _RESOLUTION * max(abs(low.value), abs(high.value))
     for count in range(_MOST_POINTS):
         others = sorted(others, key=_size)[: _KNOWN - 2]
-        halved = count > _MOST_PREDICTIONS and count % 2
-        share = 0.5 * (low.share + high.share) if halved else _root([low, high, *others])
+        share = _root([low, high, *others])
         nearest = min((low, high), key=lambda known: abs(known.share - share))
-        if abs(nearest.share - share) * length < _ROOT_WIDTH:
-            return nearest.point
+        here = abs(nearest.share - share) * length < _ROOT_WIDTH
+        if here and abs(nearest.value) <= least:
+            break
+        if here or (count > _MOST_PREDICTIONS and count % 2):
+            share = 0.5 * (low.share + high.share)
         part = (share - low.share) / (high.share - low.share)
         point = curve.between(low.point, high.point, normal, part)
-        value = test(point)
-        if not abs(value) > 0.0:
+        new = _Known(share, test(point), point)
+        if not abs(new.value) > 0.0:
             return point
-        if (value < 0.0) == (low.value < 0.0):
-            others, low = [*others, low], _Known(share, value, point)
+        near = abs(share - nearest.share) < _RESOLUTION
+        if near and 0.5 * abs(nearest.value) < abs(new.value) <= least:
+            nearest = min((nearest, new), key=_size)  # the change is a rounding error
+            break
+        if (new.value < 0.0) == (low.value < 0.0):
+            others, low = [*others, low], new
         else:
-            others, high = [*others, high], _Known(share, value, point)
+            others, high = [*others, high], new
     return nearest.point
 
 
