@@ -215,7 +215,8 @@ def double_period(point: SpecialPoint, family: Family | None = None) -> tuple[Sh
     phase = single.problem.initial_phase
     curve = Curve(family, 2 * single.periods, (1.0,), phase, single, stretches=stretches)
     across = np.linalg.svd(single.monodromy + np.eye(len(single.monodromy)))[2][-1]
-    normal = np.append(across, 0.0)
+    # Of the two sides, which are the same orbits a period later, rounding must not choose one.
+    normal = np.append(across if across[0] > 0.0 else -across, 0.0)
     place = np.append(single.state, value) + _AMPLITUDE * normal
     found = curve.point(place, normal, normal)
     return found.orbit.at_phase(point.orbit.problem.initial_phase), found.values[0]

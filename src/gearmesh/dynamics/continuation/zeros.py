@@ -26,7 +26,6 @@ _ROOT_WIDTH = 1e-13  # distance along a branch
 _RESOLUTION = 1e-6  # share of a piece; in less of it, rounding errors may hide a change
 _KNOWN = 6  # values from which a root is predicted
 _MOST_PREDICTIONS = 6  # after these every second point halves the interval
-_MOST_POINTS = 100  # of a search
 _MOST_CORRECTIONS = 50  # of the root of a polynomial
 _FAR = 2.0  # times its changes between points nearby: more than a function falls between two
 _NEAREST = 1e-10  # distance from an abrupt root that stands for it
@@ -132,14 +131,14 @@ def _locate(
         for point in (left, right, *around)
         if not isnan(value := test(point))
     ]
-    least = _RESOLUTION * max(abs(low.value), abs(high.value))
-    for count in range(_MOST_POINTS):
+    least, count = _RESOLUTION * max(abs(low.value), abs(high.value)), 0
+    while (high.share - low.share) * length > _ROOT_WIDTH:
         others = sorted(others, key=_size)[: _KNOWN - 2]
         share = _root([low, high, *others])
         nearest = min((low, high), key=lambda known: abs(known.share - share))
         here = abs(nearest.share - share) * length < _ROOT_WIDTH
         if here and abs(nearest.value) <= least:
-            break
+            return nearest.point
         if here or (count > _MOST_PREDICTIONS and count % 2):
             share = 0.5 * (low.share + high.share)
         part = (share - low.share) / (high.share - low.share)
@@ -149,13 +148,13 @@ def _locate(
             return point
         near = abs(share - nearest.share) < _RESOLUTION
         if near and 0.5 * abs(nearest.value) < abs(new.value) <= least:
-            nearest = min((nearest, new), key=_size)  # the change is a rounding error
-            break
+            return min(nearest, new, key=_size).point  # the change is a rounding error
         if (new.value < 0.0) == (low.value < 0.0):
             others, low = [*others, low], new
         else:
             others, high = [*others, high], new
-    return nearest.point
+        count += 1
+    return min(low, high, key=_size).point
 
 
 class _Known(NamedTuple):
