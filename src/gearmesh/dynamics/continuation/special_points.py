@@ -7,7 +7,7 @@ from functools import cache
 from itertools import combinations
 
 from gearmesh.dynamics.continuation.curves import Curve
-from gearmesh.dynamics.continuation.kinds import GRAZINGS
+from gearmesh.dynamics.continuation.kinds import BIFURCATIONS, GRAZINGS
 from gearmesh.dynamics.continuation.points import Point
 from gearmesh.dynamics.continuation.test_functions import (
     Function,
@@ -62,6 +62,8 @@ def search(
     around: Sequence[Point] = (),
 ) -> list[tuple[str, Point]]:
     """Return where tests pass 0 between two neighbouring points of a curve, in their order."""
+    if not tests:
+        return []
     beside = beside or cache(curve.beside)
     found = [
         (kind, point)
@@ -94,11 +96,10 @@ def special_points(
         for kind, test in event_tests(left, right, kinds)
         if not keeps_its_sign([test(point) for point in nearby])
     ]
-    events = _once(search(curve, left, right, tests, beside, around) if tests else [])
+    events = _once(search(curve, left, right, tests, beside, around))
     grazings = [point for kind, point in events if kind in GRAZINGS]
     if not grazings:
-        tests = [test for test in bifurcation_tests() if test[0] in kinds]
-        found = search(curve, left, right, tests, beside, around) if tests else []
+        found = search(curve, left, right, bifurcation_tests(kinds), beside, around)
         return _in_order(left, events + found)
     before, after = before[-1:], after[:1]
     ends = [*before, left, *grazings, right, *after]
@@ -107,12 +108,12 @@ def special_points(
         start, end = ends[k : k + 2]
         if length_between(start, end) > _NARROWEST_PIECE:
             fours = values[:, max(k - 1, 0) : k + 3].tolist()
-            tests = [
-                test
-                for test, four in zip(bifurcation_tests(), fours, strict=True)
+            sought = [
+                kind
+                for kind, four in zip(BIFURCATIONS, fours, strict=True)
                 if not keeps_its_sign(four, smooth=False)
             ]
-            found = found + (search(curve, start, end, tests, beside) if tests else [])
+            found = found + search(curve, start, end, bifurcation_tests(sought), beside)
     return _in_order(left, found)
 
 

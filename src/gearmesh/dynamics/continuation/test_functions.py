@@ -1,8 +1,7 @@
 """Test functions: functions of the points of a branch that pass 0 at special points."""
 
 import operator
-from collections.abc import Callable, Sequence
-from functools import cache
+from collections.abc import Callable, Collection, Sequence
 
 import numpy as np
 
@@ -15,7 +14,7 @@ from gearmesh.solvers.reduced.derivatives.multipliers import products
 from gearmesh.solvers.reduced.derivatives.variational import AFTER, BEFORE, VELOCITY
 
 Function = Callable[[Point], float]
-"""A function of the points of a branch, which remembers its values."""
+"""A function of the points of a branch."""
 
 Test = tuple[str, Function]
 """A kind, and a function that passes 0 at special points of this kind."""
@@ -30,19 +29,28 @@ BACK: Extrema = operator.attrgetter("gap_extrema")
 _SAME_PHASE = 0.2  # mesh periods between an extremum and the same one further on
 
 
-def bifurcation_tests() -> list[Test]:
-    """Return the tests of all bifurcations, in the order of `BIFURCATIONS`."""
-    tests: tuple[Function, ...] = (
-        operator.attrgetter("slope"),
-        operator.attrgetter("determinant"),
-        cache(lambda point: flip_test(point.motion)),
-        cache(lambda point: torus_test(point.motion)),
-    )
-    return list(zip(BIFURCATIONS, tests, strict=True))
+class _Remembered(dict[Point, float]):
+    """The values of a function at points, each computed once."""
+
+    def __init__(self, function: Function) -> None:
+        self.function = function
+
+    def __missing__(self, point: Point) -> float:
+        value = self[point] = self.function(point)
+        return value
+
+
+def bifurcation_tests(kinds: Collection[str]) -> list[Test]:
+    """Return the tests of some kinds of bifurcations."""
+    return [
+        (kind, _Remembered(function).__getitem__)
+        for kind, function in zip(BIFURCATIONS, _BIFURCATION_TESTS, strict=True)
+        if kind in kinds
+    ]
 
 
 def bifurcation_values(points: Sequence[Point]) -> np.ndarray:
-    """Return the values of `bifurcation_tests` at points in a few operations, shape (4, n)."""
+    """Return the tests of all `BIFURCATIONS` at points in a few operations, shape (4, n)."""
     if isinstance(points, Track):
         rows = points.rows
         slopes, determinants = rows[:, curves.DETERMINANT - 1], rows[:, curves.DETERMINANT]
@@ -68,6 +76,14 @@ def torus_test(orbit: Motion) -> float:
     not-a-number.
     """
     return float("nan") if orbit.undamped else float(products(orbit.monodromy[None])[1, 0])
+
+
+_BIFURCATION_TESTS: tuple[Function, ...] = (
+    operator.attrgetter("slope"),
+    operator.attrgetter("determinant"),
+    lambda point: flip_test(point.motion),
+    lambda point: torus_test(point.motion),
+)
 
 
 def event_tests(left: Point, right: Point, kinds: set[str]) -> list[Test]:
@@ -100,7 +116,7 @@ def _height(extrema: Extrema, phase: float, kind: float) -> Function:
                 found, best = y, away
         return found
 
-    return cache(height)
+    return _Remembered(height).__getitem__
 
 
 def _velocity_at(number: int) -> Function:
@@ -110,4 +126,4 @@ def _velocity_at(number: int) -> Function:
         jumps = point.motion.stiffness_jumps
         return float(jumps[number, VELOCITY]) if number < len(jumps) else float("nan")
 
-    return cache(velocity)
+    return _Remembered(velocity).__getitem__
