@@ -71,9 +71,10 @@ class Tracer:
         row = points[0]
         if row[curves.OUTCOME] != COMPLETE:
             raise NoOrbit(f"the motion ends with {STATUSES[int(row[curves.OUTCOME])]}")
-        residual = max(map(abs, (row[curves.END : curves.JACOBIAN] - row[:SIZE]).tolist()))
-        if corrections and not residual < LARGEST_RESIDUAL:
-            raise NoOrbit(f"the corrector stops at a residual of {residual:.1e}")
+        defect = (row[curves.END : curves.JACOBIAN] - row[:SIZE]).tolist()
+        if corrections and not all(abs(part) < LARGEST_RESIDUAL for part in defect):
+            size = max(map(abs, defect))
+            raise NoOrbit(f"the corrector stops at a residual of {size:.1e}")
         if row[curves.TANGENT : curves.DETERMINANT] @ along < 0.0:
             row[curves.TANGENT : curves.OUTCOME] *= -1.0
         return self.read(row, events[0, : int(row[curves.N_EVENTS])])
