@@ -45,20 +45,20 @@ def suspects(points: Sequence[Point]) -> list[tuple[int, set[str]]]:
         events = _of_points(points)
     functions = np.concatenate([bifurcation_values(points), events.heights, events.velocities])
     kinds = [*BIFURCATIONS, *GRAZINGS, *["switching"] * len(events.velocities)]
-    left, right = functions[:, :-1], functions[:, 1:]
     heights = slice(len(BIFURCATIONS), len(BIFURCATIONS) + len(GRAZINGS))
     passes = events.beyond[:, 1:] != events.beyond[:, :-1]
     grazes = passes.any(axis=0)
+    left, right = functions[:, :-1], functions[:, 1:]
+    change = np.zeros((len(functions), len(points) + 1))  # nothing changes beyond the ends
     with np.errstate(invalid="ignore"):
-        change = right - left
-        nearby = np.abs(change)
-        nearby[:, 1:] = np.fmax(nearby[:, 1:], np.abs(change[:, :-1]))
-        nearby[:, :-1] = np.fmax(nearby[:, :-1], np.abs(change[:, 1:]))
+        change[:, 1:-1] = right - left
+        size = np.abs(change)
+        nearby = np.fmax(np.fmax(size[:, :-2], size[:, 2:]), size[:, 1:-1])
         near = np.fmin(np.abs(left), np.abs(right)) < _MARGIN * nearby
         goes_on = change[:, 1:] * change[:, :-1] > 0.0
         goes_on[heights] = False
-        goes_on[:, grazes[1:] | grazes[:-1]] = False
-        near[:, 1:-1] &= ~(goes_on[:, 1:] & goes_on[:, :-1])
+        goes_on[:, 1:-1] &= ~(grazes[1:] | grazes[:-1])
+        near &= ~(goes_on[:, 1:] & goes_on[:, :-1])
         near |= left * right <= 0.0
     near[heights] |= passes
     found: dict[int, set[str]] = {}
