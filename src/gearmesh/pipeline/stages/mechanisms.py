@@ -25,18 +25,18 @@ def branches(study: Study, places: Places) -> list[Path]:
 
     limits = float(study.nu[0]), float(study.nu[-1])
     simpler = study.pair.replace(**WITHOUT_SUPPORTS)
-    made, rows, rows_without, runs = [], [], [], {}
+    followed, rows, rows_without, runs = {}, [], [], {}
     for name in _mechanisms(study).variants:
         runs[name], ends = reached(study.pair, name, study.nu)
-        found = all_branches(study.pair, name, limits, ends)
-        again = all_branches(simpler, name, limits, carried_over(found, simpler))
-        made += [tables.table(name, found)] if found else []
-        rows += tables.rows(name, found, {})
+        followed[name] = all_branches(study.pair, name, limits, ends)
+        again = all_branches(simpler, name, limits, carried_over(followed[name], simpler))
+        rows += tables.rows(name, followed[name], {})
         rows_without += tables.rows(name, again, WITHOUT_SUPPORTS)
     for variant, nus in study.plan.frequencies():
         if variant.name not in runs:
             runs[variant.name] = classify([study.pair.problem(variant, nu) for nu in nus])
-    files.write(places.branches, tables.joined(made), study, "branches of orbits")
+    table = tables.table(followed, study.pair.static_deflection)
+    files.write(places.branches, table, study, "branches of orbits")
     kinds = long_runs.table(study, runs)
     files.write(places.mechanism("attractors"), kinds, study, "long-run motion of the cases")
     write_text(places.special_points, json.dumps([*rows, *rows_without], indent=1) + "\n")
