@@ -2,6 +2,7 @@
 
 from llvmlite import ir
 from numba import types
+from numba.core import cgutils
 from numba.extending import intrinsic
 
 from gearmesh.solvers.lanes.types import (
@@ -101,6 +102,22 @@ def any_lane(typingctx, mask):
         return builder.icmp_unsigned("!=", bits, ir.Constant(bits.type, 0))
 
     return types.boolean(mask), codegen
+
+
+@intrinsic
+def least_lane(typingctx, a):
+    """Return the least of the lanes, all of which are numbers."""
+
+    def codegen(context, builder, sig, args):
+        (vector,) = args
+        if a.width == 1:
+            return vector
+        kind = ir.FunctionType(DOUBLE, [vector.type])
+        name = f"llvm.vector.reduce.fmin.v{a.width}f64"
+        function = cgutils.get_or_insert_function(builder.module, kind, name)
+        return builder.call(function, args, fastmath=("nnan",))
+
+    return types.float64(a), codegen
 
 
 @intrinsic

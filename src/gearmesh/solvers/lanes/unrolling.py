@@ -46,6 +46,10 @@ class _Traced:
         operands = (self.value, self._operand(factor), self._operand(summand))
         return _Traced(self.builder, call_llvm(self.builder, "fma", *operands))
 
+    def magnitude(self):
+        """Return the absolute value."""
+        return _Traced(self.builder, call_llvm(self.builder, "fabs", self.value))
+
     def first(self):
         """Return the first lane in every lane."""
         width = width_of_value(self.value)
@@ -90,6 +94,19 @@ class _Rows:
 
     def __setitem__(self, row, traced):
         self.builder.store(traced.value, self._pointer(row, traced.value.type), align=8)
+
+    def first(self, row):
+        """Return the first lane of a row in every lane."""
+        value = self.builder.load(self._pointer(row, DOUBLE), align=8)
+        return _Traced(self.builder, repeat(self.builder, self.width, value))
+
+    def settle(self):
+        """Keep what has been written in memory only, from where later instructions read it.
+
+        A processor has too few registers for all rows, and LLVM would write them twice.
+        """
+        barrier = ir.FunctionType(ir.VoidType(), [])
+        self.builder.asm(barrier, "", "~{memory}", [], side_effect=True)
 
 
 def unrolled(function):

@@ -7,7 +7,8 @@ place, the end of the motion over the period, the Jacobian, the tangent of the c
 import numpy as np
 
 from gearmesh.solvers.compilation import inner
-from gearmesh.solvers.reduced.derivatives.deviations import DEVIATIONS, SIZE
+from gearmesh.solvers.lanes.rows import unowned
+from gearmesh.solvers.reduced.derivatives.deviations import DEVIATIONS, SIZE, WORKSPACE
 from gearmesh.solvers.reduced.derivatives.variational import COMPLETE, HEIGHT, KIND, TURN, propagate
 
 DIMENSIONS = SIZE + 1
@@ -107,9 +108,10 @@ def _residual(point):
 
 
 @inner(inline="always")
-def _evaluate(statement, unit, point, events, samples, per_period, segments):
+def _evaluate(statement, unit, point, events, room):
     """Move from the place of a point over the period, and write what it gives."""
     begun, laws, backlash, bearings, visits, longest, tolerance, nu = statement
+    samples, per_period, segments, workspace, _ = room
     segments[:, :] = begun
     segments[:, 0] *= nu / (point[SIZE] * unit)
     state = point[END : END + SIZE]
@@ -131,6 +133,7 @@ def _evaluate(statement, unit, point, events, samples, per_period, segments):
         events,
         samples,
         per_period,
+        workspace,
     )
     point[OUTCOME], point[N_EVENTS] = outcome, n_events
     point[DAMPING], point[LEAST_FORCE] = damping, least_force
@@ -147,12 +150,12 @@ def _land(statement, unit, points, events, row, origin, normal, corrections, roo
 
     Damping helps far from an orbit. Near one a whole correction fails only because of rounding.
     """
-    samples, per_period, segments, matrix = room
+    matrix = room[-1]
     point, trial = points[row], points[-1]
     trial[:DIMENSIONS] = point[:DIMENSIONS]
     best, share, shortest = np.inf, 0.0, 0.0
     while share >= shortest:
-        _evaluate(statement, unit, trial, events[-1], samples, per_period, segments)
+        _evaluate(statement, unit, trial, events[-1], room)
         residual = _residual(trial)
         if residual < (1.0 - 0.1 * share) * best or best == np.inf:
             best, share = residual, 1.0
@@ -262,9 +265,10 @@ def trace(statement, unit, corrections, length, longest, limits, points, events,
     length : float
         Length of the next step; `SHORTEST_STEP` or less if no step succeeds.
     """
+    points, events = unowned(points), unowned(events)
     segments, matrix = np.empty_like(statement[0]), np.empty((DIMENSIONS, DIMENSIONS + 2))
     per_period = len(samples) * len(segments) // statement[4]
-    room = samples, per_period, segments, matrix
+    room = samples, per_period, segments, np.empty(WORKSPACE), matrix
     normal, origin = points[0, TANGENT : TANGENT + DIMENSIONS].copy(), np.empty(DIMENSIONS)
     nodes, slopes, table = np.empty((3, 2 * _HISTORY))
     origin[:] = points[0, :DIMENSIONS]

@@ -13,20 +13,24 @@ segment the law does not depend on time, so the motion ends ahead by its rate ti
 the segment's length, and this is carried on like any other deviation.
 """
 
+import math
+
 from gearmesh.solvers.compilation import inner
 from gearmesh.solvers.lanes.operations import (
+    COARSENESS,
     WIDEST,
-    any_lane,
-    fma,
+    coarse_exp2,
+    coarse_log2,
     lane_numbers,
+    least_lane,
     magnitude,
     select,
     spread,
 )
-from gearmesh.solvers.lanes.rows import get, load, store
+from gearmesh.solvers.lanes.rows import load, store
 from gearmesh.solvers.lanes.unrolling import unrolled
 
-ORDER = 20
+ORDER = 22
 """Degree of the Taylor polynomials."""
 
 SIZE = 4
@@ -43,58 +47,76 @@ Y, V, B, RATE, SQUARE = (i * (ORDER + 1) for i in range(5))
     RECOIL_STIFFNESS,  # -2 mu c
     SUPPORT,  # -w^2
     DAMPED,  # -2 zeta w
-    SHARE,  # -1 - 2 mu
-    RECOIL,  # -2 mu
-    LINEAR,  # k_1
-    QUADRATIC,  # k_2 sign(v), twice for a deviation
-    CUBIC,  # k_3, three times for a deviation
+    LINEAR,  # (-1 - 2 mu) k_1
+    QUADRATIC,  # (-1 - 2 mu) k_2 sign(v), twice for a deviation
+    CUBIC,  # (-1 - 2 mu) k_3, three times for a deviation
+    RECOIL_LINEAR,  # -2 mu k_1, and so on
+    RECOIL_QUADRATIC,
+    RECOIL_CUBIC,
     LOAD,  # 1 for the motion
-) = range(5 * (ORDER + 1), 5 * (ORDER + 1) + 10)
+    STEP,  # the step
+    PLACES,  # shares of the step, evenly from 0 to 1
+    PLACE_Y,  # y, v and y'' of the motion there
+    PLACE_V,
+    PLACE_A,
+    BEND,  # bound of |v''| in the step
+) = range(5 * (ORDER + 1), 5 * (ORDER + 1) + 17)
 
-N_ROWS = LOAD + 1
+N_ROWS = BEND + 1
 """Rows of a workspace."""
 
-_SHORTER = 0.875  # of a step whose last terms are too large
+WORKSPACE = (N_ROWS + 1) * WIDEST
+"""Numbers that hold a workspace wherever its first row begins at a cache line."""
 
 
-def _product(left, right, newest_left, newest_right, k):
-    """Return the k-th coefficient of a product of series; the newest coefficients come last."""
+def _product(rows, left, right, newest_left, newest_right, k):
+    """Return the k-th coefficient of a product of series; the newest coefficients come last.
+
+    The left factor, from row `left` on, is that of the motion.
+    """
     total = None
     for i in sorted(range(1, k), key=lambda i: abs(2 * i - k)):
-        total = left[i] * right[k - i] if total is None else left[i].times_plus(right[k - i], total)
-    outer = left[0] * newest_right
-    outer = outer if total is None else left[0].times_plus(newest_right, total)
-    return outer if k == 0 else newest_left.times_plus(right[0], outer)
+        a, b = rows.first(left + i), rows[right + k - i]
+        total = a * b if total is None else a.times_plus(b, total)
+    if k == 0:
+        return newest_left * newest_right
+    first = rows.first(left)
+    outer = first * newest_right if total is None else first.times_plus(newest_right, total)
+    return newest_left.times_plus(rows[right], outer)
 
 
 def _expand(rows, powers):
-    """Write the series from their coefficients of degree 0, with damping of the given powers."""
-    stiffness, recoil_stiffness = rows[STIFFNESS], rows[RECOIL_STIFFNESS]
-    support, damped = rows[SUPPORT], rows[DAMPED]
-    share, recoil, linear = rows[SHARE], rows[RECOIL], rows[LINEAR]
-    y, b, rate = rows[Y], rows[B], rows[RATE]
-    v, motion, square, motion_square = [rows[V]], [], [], []
+    """Write the series from their coefficients of degree 0, with damping of the given powers.
+
+    Each coefficient of v waits for the one before, so what depends on it is added last.
+    """
+    y, v, b, rate = rows[Y], rows[V], rows[B], rows[RATE]
     for k in range(ORDER):
         part = 1.0 / (k + 1.0)
-        bearing = rate.times_plus(damped, support * b)
-        v_known = y.times_plus(stiffness, bearing)
-        rate_known = y.times_plus(recoil_stiffness, bearing)
-        if k == 0:
-            v_known = v_known + rows[LOAD]
-        damper = v[k] * linear
+        bearing = rate.times_plus(rows[DAMPED], rows[SUPPORT] * b)
+        changes = []
+        for stiffness, linear in ((STIFFNESS, LINEAR), (RECOIL_STIFFNESS, RECOIL_LINEAR)):
+            known = y.times_plus(rows[stiffness], bearing)
+            if k == 0 and stiffness == STIFFNESS:
+                known = known + rows[LOAD]
+            changes.append(v.times_plus(rows[linear] * part, known * part))
+        dampers = []
         if powers > 1:
-            motion.append(v[k].first())
-            square.append(_product(motion, v, motion[k], v[k], k))
-            damper = square[k].times_plus(rows[QUADRATIC], damper)
+            square = _product(rows, V, V, v.first(), v, k)
+            dampers.append((square, QUADRATIC, RECOIL_QUADRATIC))
         if powers > 2:
-            motion_square.append(square[k].first())
-            cube = _product(motion_square, v, motion_square[k], v[k], k)
-            damper = cube.times_plus(rows[CUBIC], damper)
-            rows[SQUARE + k] = square[k]
-        y, b = v[k] * part, rate * part
-        v.append(damper.times_plus(share, v_known) * part)
-        rate = damper.times_plus(recoil, rate_known) * part
-        rows[Y + k + 1], rows[V + k + 1], rows[B + k + 1], rows[RATE + k + 1] = y, v[-1], b, rate
+            cube = _product(rows, SQUARE, V, square.first(), v, k)
+            dampers.append((cube, CUBIC, RECOIL_CUBIC))
+            rows[SQUARE + k] = square
+        for power, own, recoil in dampers:
+            changes = [
+                power.times_plus(rows[factor] * part, change)
+                for factor, change in zip((own, recoil), changes, strict=True)
+            ]
+        y, b = v * part, rate * part
+        v, rate = changes
+        rows[Y + k + 1], rows[V + k + 1], rows[B + k + 1], rows[RATE + k + 1] = y, v, b, rate
+        rows.settle()
 
 
 _expand_linear = unrolled(lambda rows: _expand(rows, 1))
@@ -125,11 +147,14 @@ def expand(like, work, direction, c, g, law, bearings):
     store(work, RECOIL_STIFFNESS, spread(like, recoil * c))
     store(work, SUPPORT, spread(like, -bearings[1]))
     store(work, DAMPED, spread(like, -bearings[2]))
-    store(work, SHARE, spread(like, share))
-    store(work, RECOIL, spread(like, recoil))
-    store(work, LINEAR, spread(like, law[0]))
-    store(work, QUADRATIC, select(is_motion, one, 2.0 * one) * (law[1] * direction))
-    store(work, CUBIC, select(is_motion, one, 3.0 * one) * law[2])
+    store(work, LINEAR, spread(like, share * law[0]))
+    store(work, RECOIL_LINEAR, spread(like, recoil * law[0]))
+    quadratic = select(is_motion, one, 2.0 * one) * (law[1] * direction)
+    store(work, QUADRATIC, quadratic * share)
+    store(work, RECOIL_QUADRATIC, quadratic * recoil)
+    cubic = select(is_motion, one, 3.0 * one) * law[2]
+    store(work, CUBIC, cubic * share)
+    store(work, RECOIL_CUBIC, cubic * recoil)
     store(work, LOAD, select(is_motion, one, spread(like, 0.0)))
     if law[2] != 0.0:
         _expand_cubic(like, work)
@@ -140,20 +165,28 @@ def expand(like, work, direction, c, g, law, bearings):
 
 
 @inner
-def longest_step(like, work, tolerance, longest):
-    """Return the step, at most `longest`, at which the last terms of all series are small."""
-    step = longest
-    size = spread(like, 1.0)
+def room_of(tolerance):
+    """Return log2 of the share of the radius of convergence that a step may take."""
+    return math.log2(tolerance) / (ORDER + 1.0) - COARSENESS
+
+
+@inner
+def longest_step(like, work, room, longest):
+    """Return the step, at most `longest`, at which the first terms left out reach the tolerance.
+
+    The last terms that are kept give the radius of convergence of each series (Jorba and Zou).
+    """
+    size, step = spread(like, 1.0), spread(like, longest)
     for row in (Y, V, B, RATE):
         size = _greater(size, magnitude(load(like, work, row)))
-    bound = tolerance * size
+    log_size = coarse_log2(size) - COARSENESS
     for k in range(ORDER - 2, ORDER + 1):
-        last = spread(like, 0.0)
+        last = spread(like, 1e-290)
         for row in (Y, V, B, RATE):
             last = _greater(last, magnitude(load(like, work, row + k)))
-        while any_lane(last * step**k > bound):
-            step *= _SHORTER
-    return step
+        bound = coarse_exp2((log_size - coarse_log2(last)) * (1.0 / k) + room)
+        step = select(bound < step, bound, step)
+    return least_lane(step)
 
 
 @inner
@@ -161,31 +194,32 @@ def _greater(a, b):
     return select(a > b, a, b)
 
 
-@inner
-def advance(like, work, s):
-    """Replace the coefficients of degree 0 by the values at `s`."""
-    at = spread(like, s)
-    y, v = load(like, work, Y + ORDER), load(like, work, V + ORDER)
-    b, rate = load(like, work, B + ORDER), load(like, work, RATE + ORDER)
+def _advance(rows):
+    """Replace the coefficients of degree 0 by the values at the end of the step."""
+    values, step = [rows[row + ORDER] for row in (Y, V, B, RATE)], rows[STEP]
     for k in range(ORDER - 1, -1, -1):
-        y = fma(y, at, load(like, work, Y + k))
-        v = fma(v, at, load(like, work, V + k))
-        b = fma(b, at, load(like, work, B + k))
-        rate = fma(rate, at, load(like, work, RATE + k))
-    store(work, Y, y)
-    store(work, V, v)
-    store(work, B, b)
-    store(work, RATE, rate)
+        values = [
+            value.times_plus(step, rows[row + k])
+            for row, value in zip((Y, V, B, RATE), values, strict=True)
+        ]
+    for row, value in zip((Y, V, B, RATE), values, strict=True):
+        rows[row] = value
 
 
-@inner
-def motion_at(like, work, s):
-    """Return y, v and y'' of the motion at times `s`, one in each lane."""
-    y = spread(like, get(work, WIDEST, Y + ORDER, 0))
-    v = spread(like, get(work, WIDEST, V + ORDER, 0))
-    a = spread(like, 0.0)
+def _evaluate_places(rows):
+    """Write the motion at the places of the step, and the bound of |v''|."""
+    step = rows[STEP]
+    places = rows[PLACES] * step
+    y, v, a, bend = rows.first(Y + ORDER), rows.first(V + ORDER), None, None
     for k in range(ORDER - 1, -1, -1):
-        a = fma(a, s, v)
-        y = fma(y, s, spread(like, get(work, WIDEST, Y + k, 0)))
-        v = fma(v, s, spread(like, get(work, WIDEST, V + k, 0)))
-    return y, v, a
+        a = v if a is None else a.times_plus(places, v)
+        if k > 0:
+            bent = rows.first(V + k + 1).magnitude() * (k * (k + 1.0))
+            bend = bent if bend is None else bend.times_plus(step, bent)
+        y = y.times_plus(places, rows.first(Y + k))
+        v = v.times_plus(places, rows.first(V + k))
+    rows[PLACE_Y], rows[PLACE_V], rows[PLACE_A], rows[BEND] = y, v, a, bend
+
+
+advance = unrolled(_advance)
+evaluate_places = unrolled(_evaluate_places)

@@ -3,8 +3,10 @@
 import numpy as np
 
 from gearmesh.solvers.compilation import inner
+from gearmesh.solvers.lanes.operations import fma
 
 _NARROWEST = 1e-8  # share of a step; roots closer than this are not separated
+_SQUARED = 1e-9  # share of a step; the error after a correction of this size is its square
 
 
 @inner
@@ -12,17 +14,30 @@ def value_and_slope(polynomial, s):
     """Return a polynomial, lowest coefficient first, and its slope at `s`."""
     value, slope = 0.0, 0.0
     for k in range(polynomial.size - 1, -1, -1):
-        slope = slope * s + value
-        value = value * s + polynomial[k]
+        slope = fma(slope, s, value)
+        value = fma(value, s, polynomial[k])
     return value, slope
 
 
 @inner
 def root_between(polynomial, low, high):
-    """Return the root of a polynomial that is monotone between `low` and `high`."""
-    falling = value_and_slope(polynomial, low)[0] > value_and_slope(polynomial, high)[0]
-    s = 0.5 * (low + high)
+    """Return the root of a polynomial that is monotone between `low` and `high`.
+
+    Newton's method begins where a cubic polynomial for the inverse function has the root.
+    """
+    value, slope = polynomial[0], polynomial[1]
+    if low > 0.0:
+        value, slope = value_and_slope(polynomial, low)
+    other, steepness = value_and_slope(polynomial, high)
+    falling = value > other
+    following = 0.5 * (low + high)
+    if slope != 0.0 and steepness != 0.0 and value != other:
+        share, rise = value / (value - other), other - value
+        bend = (1.0 - share) * (rise / slope - high + low) - share * (rise / steepness - high + low)
+        guess = low + share * (high - low + (1.0 - share) * bend)
+        following = guess if low < guess < high else following
     for _ in range(80):
+        s = following
         value, slope = value_and_slope(polynomial, s)
         if value == 0.0:
             break
@@ -31,12 +46,10 @@ def root_between(polynomial, low, high):
         else:
             high = s
         following = s - value / slope if slope != 0.0 else low
+        if abs(following - s) <= _SQUARED * high:
+            return min(max(following, low), high)
         if not low < following < high:
             following = 0.5 * (low + high)
-        if abs(following - s) <= 1e-16 * high:
-            s = following
-            break
-        s = following
     return s
 
 

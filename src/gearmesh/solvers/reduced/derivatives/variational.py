@@ -19,26 +19,34 @@ from gearmesh.solvers.lanes.operations import (
     any_lane,
     fma,
     lane_numbers,
+    least_lane,
     magnitude,
     select,
     spread,
     zeros8,
 )
-from gearmesh.solvers.lanes.rows import load, pointer_to, store, store_at
+from gearmesh.solvers.lanes.rows import load, pointer_to, store, unowned
 from gearmesh.solvers.reduced.derivatives.deviations import (
+    BEND,
     DEVIATIONS,
     N_ROWS,
     ORDER,
+    PLACE_A,
+    PLACE_V,
+    PLACE_Y,
+    PLACES,
     RATE,
     SIZE,
     SQUARE,
+    STEP,
     B,
     V,
     Y,
     advance,
+    evaluate_places,
     expand,
     longest_step,
-    motion_at,
+    room_of,
 )
 from gearmesh.solvers.reduced.derivatives.polynomials import (
     first_root,
@@ -73,8 +81,9 @@ def saltation(before, after, gradient):
     gradient : ndarray, shape (n,)
         Gradient of the event function, whose rate along `before` is not 0.
     """
-    rate = np.sum(gradient * before)
-    n = before.size
+    rate, n = 0.0, len(gradient)
+    for i in range(n):
+        rate += gradient[i] * before[i]
     matrix = np.eye(n)
     for i in range(n):
         for j in range(n):
@@ -132,36 +141,24 @@ def _level_ahead(regime, direction, backlash):
 
 
 @inner
-def _turns_nowhere(velocity, step, v, a):
-    """Return whether a bound on v'' proves that v has no root in the step.
+def _turns_nowhere(like, work, step):
+    """Return whether the bound of v'' proves that v has no root in the step.
 
     The proof covers the neighbourhood of each of the evenly spaced places.
-
-    Parameters
-    ----------
-    velocity : ndarray
-        Polynomial of v.
-    v, a : lanes
-        v and v' at `WIDEST` places from 0 to `step`.
     """
-    bend = 0.0
-    for k in range(ORDER, 1, -1):
-        bend = bend * step + k * (k - 1.0) * abs(velocity[k])
+    v, a, bend = load(like, work, PLACE_V), load(like, work, PLACE_A), load(like, work, BEND)
     half = 0.5 * step / (WIDEST - 1)
-    return not any_lane(magnitude(v) <= (magnitude(a) + 0.5 * bend * half) * half)
+    return not any_lane(magnitude(v) <= (magnitude(a) + 0.5 * half * bend) * half)
 
 
 @inner
-def _least_force(like, y, v, c, law, regime, forces):
-    """Return the least force between flanks that touch with these y and v; `forces` is room."""
+def _least_force(like, work, c, law, regime):
+    """Return the least force at the places of a step between flanks that touch."""
+    y, v = load(like, work, PLACE_Y), load(like, work, PLACE_V)
     speed = magnitude(v)
     slope = fma(speed, spread(like, law[2]), spread(like, law[1]))
     damper = v * fma(slope, speed, spread(like, law[0]))
-    store_at(forces, 0, regime * fma(spread(like, c), y, damper))
-    least = forces[0]
-    for place in range(1, WIDEST):
-        least = min(least, forces[place])
-    return least
+    return least_lane(regime * fma(spread(like, c), y, damper))
 
 
 @inner
@@ -178,6 +175,7 @@ def propagate(
     events,
     samples,
     per_period,
+    workspace,
 ):
     """Move `state` and its `jacobian` over the segments of the mesh period, in place.
 
@@ -200,6 +198,7 @@ def propagate(
     events : ndarray, shape (room, EVENT_SIZE)
     samples : ndarray, shape (n, 4)
         Filled with y, v, y'' and the regime at `per_period` times in a mesh period.
+    workspace : ndarray, shape (WORKSPACE,)
 
     Returns
     -------
@@ -209,17 +208,18 @@ def propagate(
     least_force : float
         Least force between flanks that touch; infinity if none do.
     """
-    room = np.zeros((N_ROWS + 1) * WIDEST)
-    first = -room.ctypes.data % (8 * WIDEST) // 8  # no row straddles two cache lines
-    series = room[first : first + N_ROWS * WIDEST].reshape((N_ROWS, WIDEST))
-    like, work = zeros8(), pointer_to(series)
+    segments, laws, events = unowned(segments), unowned(laws), unowned(events)
+    bearings, samples = unowned(bearings), unowned(samples)
+    first = -workspace.ctypes.data % (8 * WIDEST) // 8  # no row straddles two cache lines
+    series = unowned(workspace[first : first + N_ROWS * WIDEST].reshape((N_ROWS, WIDEST)))
+    like, work, room = zeros8(), pointer_to(series), room_of(tolerance)
     height, velocity = series[Y : Y + ORDER + 1, 0], series[V : V + ORDER + 1, 0]
     square, now = series[SQUARE : SQUARE + ORDER, 0], series[: RATE + 1 : ORDER + 1]
     place = now[:, 0]
     place[:] = state
-    now[:, 1 : DEVIATIONS + 1] = jacobian
-    places = lane_numbers(like) * (1.0 / (WIDEST - 1))
-    deviates, forces = lane_numbers(like) > spread(like, 0.0), np.empty(WIDEST)
+    now[:, 1 : DEVIATIONS + 1], now[:, DEVIATIONS + 1 :] = jacobian, 0.0
+    store(work, PLACES, lane_numbers(like) * (1.0 / (WIDEST - 1)))
+    deviates = lane_numbers(like) > spread(like, 0.0)
     front = np.zeros(SIZE)
     front[0] = 1.0
     regime = CONTACT_LOSS
@@ -236,7 +236,7 @@ def propagate(
         number = visit % len(segments)
         length, g = segments[number, 0], segments[number, 2]
         c, offset = _touching(regime, backlash, segments[number, 1])
-        law = laws[abs(regime)]
+        law = unowned(laws[abs(regime)])
         previous = segments[(number - 1) % len(segments)]
         if previous[1] != segments[number, 1] or previous[2] != g:
             if n_events == len(events):
@@ -263,20 +263,25 @@ def propagate(
             begin = height[0]
             height[0] -= offset
             expand(like, work, direction, c, g, law, bearings)
-            step = longest_step(like, work, tolerance, min(longest, length - since))
-            y, v, a = motion_at(like, work, places * step)
+            step = longest_step(like, work, room, min(longest, length - since))
+            store(work, STEP, spread(like, step))
+            evaluate_places(like, work)
             kind = -1
             # Up to the first extremum y is monotone, so its value there shows whether it has
             # passed the level ahead.
-            if not at_rest and not _turns_nowhere(velocity, step, v, a):
+            if not at_rest and not _turns_nowhere(like, work, step):
                 turn = first_root(velocity, step)
                 if turn < step:
                     step, kind = turn, TURN
-            level = _level_ahead(regime, direction, backlash)
-            if not at_rest and direction * (value_and_slope(height, step)[0] + offset - level) > 0:
-                height[0] -= level - offset
+            away = _level_ahead(regime, direction, backlash) - offset
+            y = load(like, work, PLACE_Y)
+            if kind == TURN:
+                y = spread(like, value_and_slope(height, step)[0])
+            beyond = (y - spread(like, away)) * direction > spread(like, 0.0)
+            if not at_rest and any_lane(beyond):
+                height[0] -= away
                 step, kind = root_between(height, 0.0, step), CROSSING
-                height[0] += level - offset
+                height[0] += away
             while n_samples < len(samples):
                 s = n_samples * spacing - begun - since
                 if s >= step - _SAMPLE_EDGE * spacing:
@@ -286,23 +291,24 @@ def propagate(
                 samples[n_samples, 1], samples[n_samples, 2] = value_and_slope(velocity, s)
                 samples[n_samples, 3] = regime
                 n_samples += 1
+            if kind != -1:
+                store(work, STEP, spread(like, step))
             if regime != CONTACT_LOSS:
                 if kind != -1:
-                    y, v, a = motion_at(like, work, places * step)
-                least = _least_force(like, y, v, c, law, regime, forces)
-                least_force = min(least_force, least)
+                    evaluate_places(like, work)
+                least_force = min(least_force, _least_force(like, work, c, law, regime))
             if law[2] != 0.0:
                 total = 0.0
                 for k in range(ORDER - 1, -1, -1):
                     total = total * step + square[k] / (k + 1.0)
                 damping += 3.0 * law[2] * total * step
-            advance(like, work, step)
+            advance(like, work)
             height[0] += offset
             since = length if kind == -1 and step == length - since else since + step
             if kind == TURN:
                 velocity[0] = 0.0
             elif kind == CROSSING:
-                height[0] = level
+                height[0] = away + offset
             damping += law[0] * step + 2.0 * law[1] * abs(height[0] - begin)
             if kind == -1:
                 continue
@@ -312,10 +318,10 @@ def propagate(
             if kind == CROSSING:
                 regime += 1 if direction > 0.0 else -1
                 c, offset = _touching(regime, backlash, segments[number, 1])
-                law = laws[abs(regime)]
+                law = unowned(laws[abs(regime)])
             after = vector_field(place, direction, c, offset, g, law, bearings)
             if kind == CROSSING and velocity[0] != 0.0:
-                jump = saltation(np.array(before), np.array(after), front)
+                jump = saltation(before, after, front)
                 apart = select(deviates, load(like, work, Y), spread(like, 0.0))
                 store(work, V, fma(apart, spread(like, jump[1, 0]), load(like, work, V)))
                 store(work, RATE, fma(apart, spread(like, jump[3, 0]), load(like, work, RATE)))
