@@ -92,6 +92,8 @@ def test_a_table_gives_stability_period_and_signature_of_each_point(lubricant, p
     neutral = table.isel(point=np.flatnonzero(table["stability"] == 0))
     assert set(neutral["signature"].values) == {"normal_mesh"}
     assert {*table["periods"].values.tolist()} == {1, 2}
+    assert all("long_name" in variable.attrs for variable in table.variables.values())
+    assert table["y_max"].attrs["units"] == "mm"
     size = np.hypot(table["multipliers_real"], table["multipliers_imaginary"]).max("multiplier")
     assert (size.values[table["stability"] == 1] < 1.0).all()
     assert (size.values[table["stability"] == -1] > 1.0).all()
