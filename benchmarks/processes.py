@@ -4,10 +4,7 @@ import json
 from collections import Counter
 from pathlib import Path
 
-ADDED = (
-    *("branches", "basins", "sweeps", "bands", "lyapunov", "special_curves", "why"),
-    "explorer",
-)
+ADDED = ("branches", "basins", "ensembles", "special_curves", "why", "explorer")
 """Jobs that the base does not have: the mechanisms and the explorer."""
 NOTEBOOKS = ("figure", "run_notebook")
 """Jobs that execute a notebook, as they are called here and in the base, with their kernels."""

@@ -78,9 +78,9 @@ def test_the_orbit_in_contact_grazes_where_its_least_y_is_0(rows):
     assert Points(rows).first("c-lubricant", "grazing_front") == pytest.approx(grazing, abs=1e-7)
 
 
-def test_both_motions_exist_between_the_folds_and_nowhere_else(lubricant, rows):
+def test_both_motions_exist_between_the_folds_and_nowhere_else(lubricant, rows, pair):
     low, high = Points(rows).of("c-lubricant", "fold")
-    table = tables.table("c-lubricant", lubricant)
+    table = tables.table({"c-lubricant": lubricant}, pair.static_deflection)
     single = table.isel(point=np.flatnonzero(table["periods"] == 1))
     for nu, expected in ((low - 1e-3, 1), (0.5 * (low + high), 3), (high + 1e-3, 1)):
         crossings = np.diff(np.sign(single["nu"].values - nu)) != 0
@@ -88,10 +88,12 @@ def test_both_motions_exist_between_the_folds_and_nowhere_else(lubricant, rows):
 
 
 def test_a_table_gives_stability_period_and_signature_of_each_point(lubricant, pair):
-    table = tables.table("c-lubricant", lubricant)
+    table = tables.table({"c-lubricant": lubricant}, pair.static_deflection)
     neutral = table.isel(point=np.flatnonzero(table["stability"] == 0))
     assert set(neutral["signature"].values) == {"normal_mesh"}
     assert {*table["periods"].values.tolist()} == {1, 2}
+    assert all("long_name" in variable.attrs for variable in table.variables.values())
+    assert table["y_max"].attrs["units"] == "mm"
     size = np.hypot(table["multipliers_real"], table["multipliers_imaginary"]).max("multiplier")
     assert (size.values[table["stability"] == 1] < 1.0).all()
     assert (size.values[table["stability"] == -1] > 1.0).all()
@@ -100,8 +102,8 @@ def test_a_table_gives_stability_period_and_signature_of_each_point(lubricant, p
     )
 
 
-def test_the_same_branches_give_the_same_bytes(lubricant, study, tmp_path):
-    table = tables.table("c-lubricant", lubricant)
+def test_the_same_branches_give_the_same_bytes(lubricant, study, pair, tmp_path):
+    table = tables.table({"c-lubricant": lubricant}, pair.static_deflection)
     for name in ("one.nc", "two.nc"):
         files.write(tmp_path / name, table, study, "branches")
     assert (tmp_path / "one.nc").read_bytes() == (tmp_path / "two.nc").read_bytes()

@@ -18,35 +18,23 @@ rule basins:
         " 2>&1 | tee {log}"
 
 
-rule sweeps:
+# What long runs show by themselves, without the orbits.
+rule ensembles:
     input:
-        again=PLAN.again("sweeps"),
+        again=PLAN.again("ensembles"),
     output:
         PLACES.mechanism("sweeps"),
         PLACES.mechanism("design_map"),
-    log:
-        PLACES.log("sweeps"),
-    benchmark:
-        PLACES.benchmark("sweeps")
-    params:
-        made_of=PLAN.made_of("sweeps"),
-    shell:
-        'python -m gearmesh.pipeline sweeps "$STUDY" {params.made_of} 2>&1 | tee {log}'
-
-
-rule lyapunov:
-    input:
-        again=PLAN.again("lyapunov"),
-    output:
+        PLACES.mechanism("bands"),
         PLACES.mechanism("lyapunov"),
     log:
-        PLACES.log("lyapunov"),
+        PLACES.log("ensembles"),
     benchmark:
-        PLACES.benchmark("lyapunov")
+        PLACES.benchmark("ensembles")
     params:
-        made_of=PLAN.made_of("lyapunov"),
+        made_of=PLAN.made_of("ensembles"),
     shell:
-        'python -m gearmesh.pipeline lyapunov "$STUDY" {params.made_of} 2>&1 | tee {log}'
+        'python -m gearmesh.pipeline ensembles "$STUDY" {params.made_of} 2>&1 | tee {log}'
 
 
 rule special_curves:
@@ -64,21 +52,6 @@ rule special_curves:
     shell:
         'python -m gearmesh.pipeline special_curves "$STUDY" {params.made_of} --read {input.read}'
         " 2>&1 | tee {log}"
-
-
-rule bands:
-    input:
-        again=PLAN.again("bands"),
-    output:
-        PLACES.mechanism("bands"),
-    log:
-        PLACES.log("bands"),
-    benchmark:
-        PLACES.benchmark("bands")
-    params:
-        made_of=PLAN.made_of("bands"),
-    shell:
-        'python -m gearmesh.pipeline bands "$STUDY" {params.made_of} 2>&1 | tee {log}'
 
 
 rule why:

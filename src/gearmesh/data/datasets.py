@@ -43,8 +43,15 @@ _BLOCK = 512
 _COMPRESSED = {"compression": "zlib", "complevel": 1, "shuffle": True}
 
 
-def open_dataset(path: Path | str) -> xr.Dataset:
+def open_dataset(path: Path | str, only: Sequence[str] = ()) -> xr.Dataset:
     """Open a dataset or a case file and load it; variants are selected by name.
+
+    Parameters
+    ----------
+    path : Path or str
+        The file.
+    only : sequence of str
+        Variables to load; all by default.
 
     Raises
     ------
@@ -54,7 +61,7 @@ def open_dataset(path: Path | str) -> xr.Dataset:
     try:
         classic.refuse_damage(path)
         with xr.open_dataset(path, engine="netcdf4") as dataset:
-            found = dataset.load()
+            found = (dataset[list(only)] if only else dataset).load()
     except (OSError, ValueError, RuntimeError):
         raise InputError(f"{path}: missing or damaged; delete it and run again") from None
     if NAMES not in found.variables:

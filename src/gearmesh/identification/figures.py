@@ -68,7 +68,7 @@ def _draw_factor(axes: Axes, factor: str, found: Mapping[str, Any], bounds: Rang
     ticks = [tick for tick in FACTORS[factor].ticks if bounds.low <= tick <= bounds.high]
     labels = [f"{tick:g}".replace("-", "−") for tick in ticks]
     axes.set_xticks([bounds.unit(tick) for tick in ticks], labels)
-    axes.set_title(FACTORS[factor].label, pad=2)
+    axes.set_title(FACTORS[factor].label, pad=3)
 
 
 def _draw_shape(axes: Axes, shape: np.ndarray, base: float, height: float) -> None:

@@ -122,7 +122,7 @@ class Branch:
             },
             static_deflection(pair, (self.parameter,), found.values[:, None]),
         )
-        nu = np.array([orbit.problem.nu for orbit in found.orbits])
+        nu = np.array([point.orbit.problem.nu for point in found.points])
         for name, values, what in (
             ("nu", nu, "mesh frequency nu_s"),
             ("stable", found.stable, "whether the orbit is stable"),

@@ -16,6 +16,7 @@ from pathlib import Path
 import nbformat
 import papermill
 from nbclient.exceptions import DeadKernelError
+from papermill.engines import NBClientEngine, NotebookExecutionManager, papermill_engines
 from papermill.exceptions import PapermillExecutionError
 from traitlets.config import Config
 
@@ -39,6 +40,26 @@ c.IPKernelApp.log_level = 'CRITICAL'
 
 LONGEST = 90
 """Length of a folder in which sockets may be; a name of a socket has 104 characters at most."""
+
+
+class _SavedAtTheEnd(NBClientEngine):  # type: ignore[misc]
+    """Run a notebook and save it when it ends, however it ends.
+
+    papermill would save it twice for each cell, with all pictures in it.
+    """
+
+    @classmethod
+    def execute_managed_notebook(
+        cls, nb_man: NotebookExecutionManager, *arguments: object, **settings: object
+    ) -> None:
+        path, nb_man.output_path = nb_man.output_path, None
+        try:
+            super().execute_managed_notebook(nb_man, *arguments, **settings)
+        finally:
+            nb_man.output_path = path
+
+
+papermill_engines.register(_SavedAtTheEnd.__name__, _SavedAtTheEnd)
 
 
 def run_notebook(
@@ -109,6 +130,7 @@ def _execute(
                 str(notebook),
                 str(executed),
                 parameters,
+                engine_name=_SavedAtTheEnd.__name__,
                 kernel_name=KERNEL,
                 start_timeout=START_TIMEOUT,
                 progress_bar=False,

@@ -267,7 +267,7 @@ _FACTS: dict[str, Callable[..., object]] = {
     ),
     **{
         stage: lambda plan: (plan.study.title, plan.pair, plan.mechanisms)
-        for stage in ("basins", "sweeps", "bands", "lyapunov", "special_curves", "why")
+        for stage in ("basins", "ensembles", "special_curves", "why")
     },
     "figure": lambda plan, name: (
         *(plan.study.title, plan.pair, plan.study.time_courses),

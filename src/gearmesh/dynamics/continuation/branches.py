@@ -3,6 +3,7 @@
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property, partial
+from typing import overload
 
 import numpy as np
 
@@ -73,8 +74,8 @@ class Branch:
 
     @cached_property
     def orbits(self) -> Sequence[Shot]:
-        """The orbits at these values."""
-        return [point.orbit.at_phase(self.phase) for point in self.points]
+        """The orbits at these values; each is computed when it is first asked for."""
+        return _Orbits(self.points, self.phase)
 
     @cached_property
     def y_max(self) -> np.ndarray:
@@ -100,6 +101,31 @@ class Branch:
     def multipliers(self) -> np.ndarray:
         """Floquet multipliers, shape (n, number of multipliers)."""
         return np.array([point.orbit.multipliers for point in self.points])
+
+
+class _Orbits(Sequence[Shot]):
+    """The orbits of points of a branch at one mesh phase, each computed once, when asked for."""
+
+    def __init__(self, points: Sequence[Point], phase: float) -> None:
+        self._points, self._phase = points, phase
+        self._known: dict[int, Shot] = {}
+
+    def __len__(self) -> int:
+        return len(self._points)
+
+    @overload
+    def __getitem__(self, at: int) -> Shot: ...
+
+    @overload
+    def __getitem__(self, at: slice) -> list[Shot]: ...
+
+    def __getitem__(self, at: int | slice) -> Shot | list[Shot]:
+        chosen = range(len(self))[at]
+        if isinstance(chosen, range):
+            return [self[i] for i in chosen]
+        if chosen not in self._known:
+            self._known[chosen] = self._points[chosen].orbit.at_phase(self._phase)
+        return self._known[chosen]
 
 
 def follow(

@@ -20,8 +20,8 @@ STAGES = {
     for stage in (
         *(cases.cases, cases.case, datasets.datasets, datasets.thresholds),
         *(figures.fig1, figures.figure, figures.identified_figures, figures.study_figures),
-        *(mechanisms.branches, mechanisms.basins, mechanisms.sweeps, mechanisms.bands),
-        *(mechanisms.lyapunov, mechanisms.special_curves, mechanisms.why),
+        *(mechanisms.branches, mechanisms.basins, mechanisms.ensembles),
+        *(mechanisms.special_curves, mechanisms.why),
         *(claims.printed, claims.ledger, claims.verdict),
         *(
             report.notebook_pages,

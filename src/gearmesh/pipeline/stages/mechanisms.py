@@ -25,18 +25,18 @@ def branches(study: Study, places: Places) -> list[Path]:
 
     limits = float(study.nu[0]), float(study.nu[-1])
     simpler = study.pair.replace(**WITHOUT_SUPPORTS)
-    made, rows, rows_without, runs = [], [], [], {}
+    followed, rows, rows_without, runs = {}, [], [], {}
     for name in _mechanisms(study).variants:
         runs[name], ends = reached(study.pair, name, study.nu)
-        found = all_branches(study.pair, name, limits, ends)
-        again = all_branches(simpler, name, limits, carried_over(found, simpler))
-        made += [tables.table(name, found)] if found else []
-        rows += tables.rows(name, found, {})
+        followed[name] = all_branches(study.pair, name, limits, ends)
+        again = all_branches(simpler, name, limits, carried_over(followed[name], simpler))
+        rows += tables.rows(name, followed[name], {})
         rows_without += tables.rows(name, again, WITHOUT_SUPPORTS)
     for variant, nus in study.plan.frequencies():
         if variant.name not in runs:
             runs[variant.name] = classify([study.pair.problem(variant, nu) for nu in nus])
-    files.write(places.branches, tables.joined(made), study, "branches of orbits")
+    table = tables.table(followed, study.pair.static_deflection)
+    files.write(places.branches, table, study, "branches of orbits")
     kinds = long_runs.table(study, runs)
     files.write(places.mechanism("attractors"), kinds, study, "long-run motion of the cases")
     write_text(places.special_points, json.dumps([*rows, *rows_without], indent=1) + "\n")
@@ -57,35 +57,24 @@ def basins(study: Study, places: Places) -> list[Path]:
     return written
 
 
-def sweeps(study: Study, places: Places) -> list[Path]:
-    """Sweep ν_s up and down, for the variants of the study and over the damping."""
-    from gearmesh.reproduction.mechanisms import files, sweeps
+def ensembles(study: Study, places: Places) -> list[Path]:
+    """Measure many long runs: sweeps of ν_s up and down, bands of extrema, Lyapunov exponents.
 
-    chosen = _mechanisms(study)
+    None of them needs the orbits. They are one job because each would start the same solver.
+    """
+    from gearmesh.reproduction.mechanisms import bands, exponents, files, sweeps
+
+    pair, chosen = study.pair, _mechanisms(study)
     damped = [name for name in chosen.variants if name != "a-conservative"]
-    swept = sweeps.sweeps(study.pair, damped)
-    files.write(places.mechanism("sweeps"), swept, study, "sweeps up and down")
-    mapped = sweeps.design_map(study.pair, chosen.resolution // 3 + 1)
-    files.write(places.mechanism("design_map"), mapped, study, "design map")
-    return [places.mechanism("sweeps"), places.mechanism("design_map")]
-
-
-def bands(study: Study, places: Places) -> list[Path]:
-    """Measure the bands of extrema with lubricant damping after 5, 50 and 500 revolutions."""
-    from gearmesh.reproduction.mechanisms import bands, files
-
-    found = bands.bands(study.pair, _mechanisms(study).variants)
-    files.write(places.mechanism("bands"), found, study, "bands of extrema")
-    return [places.mechanism("bands")]
-
-
-def lyapunov(study: Study, places: Places) -> list[Path]:
-    """Compute the Lyapunov exponents of the conservative variant."""
-    from gearmesh.reproduction.mechanisms import exponents, files
-
-    found = exponents.exponents(study.pair, _mechanisms(study).resolution)
-    files.write(places.mechanism("lyapunov"), found, study, "Lyapunov exponents")
-    return [places.mechanism("lyapunov")]
+    made = {
+        "sweeps": (sweeps.sweeps(pair, damped), "sweeps up and down"),
+        "design_map": (sweeps.design_map(pair, chosen.resolution // 3 + 1), "design map"),
+        "bands": (bands.bands(pair, chosen.variants), "bands of extrema"),
+        "lyapunov": (exponents.exponents(pair, chosen.resolution), "Lyapunov exponents"),
+    }
+    for name, (dataset, title) in made.items():
+        files.write(places.mechanism(name), dataset, study, title)
+    return [places.mechanism(name) for name in made]
 
 
 def special_curves(study: Study, places: Places) -> list[Path]:

@@ -48,7 +48,8 @@ def write_explorer(study: Study, places: Places) -> None:
     if study.plan.mechanisms is not None:
         points = json.loads(places.special_points.read_text(encoding="utf-8"))
         orbits = open_dataset(places.branches), points
-    page = render(study, open_dataset(places.resonance), open_dataset(places.bifurcation), orbits)
+    extrema = open_dataset(places.bifurcation, ("extremum_y_rel", "extremum_kind"))
+    page = render(study, open_dataset(places.resonance), extrema, orbits)
     write_text(places.explorer, page)
 
 

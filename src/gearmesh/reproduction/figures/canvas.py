@@ -6,12 +6,15 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 from matplotlib import rcParams, style
 from matplotlib.axes import Axes
+from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 from matplotlib.ticker import FixedLocator, FuncFormatter
+from PIL import Image
 
 from gearmesh.data.writing import replacing
 from gearmesh.reproduction.figures import palette
@@ -19,6 +22,8 @@ from gearmesh.reproduction.figures import palette
 STYLE = "gearmesh.reproduction.figures.gearmesh"
 WIDTH = 7.2
 """Width of a full page figure in inches."""
+
+_COMPRESSION = 3  # of PNG; 6, the default, takes half as long again and saves a fourteenth
 
 NOT_IN_STUDY = "not in this study"
 """Text of a panel whose cases are missing in the study."""
@@ -58,7 +63,7 @@ def save(figure: Figure, path: Path | str) -> tuple[Path, Path]:
     with style.context(["default", STYLE]):
         _lay_out(figure)
         with replacing(png) as temporary:
-            figure.savefig(temporary, format="png", metadata={"Software": None})
+            _write_png(figure, temporary)
         with replacing(svg) as temporary:
             figure.savefig(temporary, format="svg", metadata={"Date": None, "Creator": None})
     return png, svg
@@ -72,6 +77,18 @@ def _lay_out(figure: Figure) -> None:
         figure.set_layout_engine(None)
 
 
+def _write_png(figure: Figure, file: Path | io.BytesIO) -> None:
+    """Write a laid-out figure as PNG: three channels, because all of it is opaque.
+
+    matplotlib would write a fourth and compress harder: twice the time, for no smaller file.
+    """
+    figure.dpi = dpi = rcParams["savefig.dpi"]
+    canvas = FigureCanvasAgg(figure)
+    canvas.draw()
+    pixels = Image.fromarray(np.asarray(canvas.buffer_rgba())).convert("RGB")
+    pixels.save(file, format="png", dpi=(dpi, dpi), compress_level=_COMPRESSION)
+
+
 def picture(figure: Figure, path: Path | str | None = None) -> bytes:
     """Return a figure as PNG, and write it as `save` does if `path` is given."""
     if path is not None:
@@ -79,7 +96,7 @@ def picture(figure: Figure, path: Path | str | None = None) -> bytes:
     image = io.BytesIO()
     with style.context(["default", STYLE]):
         _lay_out(figure)
-        figure.savefig(image, format="png", metadata={"Software": None})
+        _write_png(figure, image)
     return image.getvalue()
 
 

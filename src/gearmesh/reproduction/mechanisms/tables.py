@@ -1,10 +1,13 @@
 """Branches as one table over all their points, and special points as rows of a list."""
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import xarray as xr
+
+from gearmesh.data.casefile import REGIMES
+from gearmesh.interface.lengths import with_lengths
 
 if TYPE_CHECKING:  # code that only reads results imports this module, too, and needs no solver
     from gearmesh.interface.branches import Branch, SpecialPoint
@@ -16,8 +19,15 @@ Row = dict[str, Any]
 """A special point as `special_points.json` holds it."""
 
 
-def table(variant: str, branches: Sequence["Branch"]) -> xr.Dataset:
-    """Return the branches of a variant, one after the other, over ``point``.
+def table(branches: Mapping[str, Sequence["Branch"]], static_deflection: float) -> xr.Dataset:
+    """Return all branches in ν_s, one after the other, over ``point``.
+
+    Parameters
+    ----------
+    branches : mapping
+        Name of a variant -> its branches.
+    static_deflection : float
+        y_st in mm.
 
     Returns
     -------
@@ -26,40 +36,65 @@ def table(variant: str, branches: Sequence["Branch"]) -> xr.Dataset:
         deflections), `stability`, `signature`, and the real and imaginary parts of the
         `multipliers`.
     """
-    return xr.concat(
-        [_points(variant, number, branch) for number, branch in enumerate(branches)], "point"
-    )
+    numbered = [
+        (variant, number, branch.orbit.periods, branch.found)
+        for variant, several in branches.items()
+        for number, branch in enumerate(several)
+    ]
+    variants, numbers, periods, found = zip(*numbered, strict=True)
+    sizes = [len(one.points) for one in found]
 
+    def along(name: str) -> np.ndarray:
+        return np.concatenate([getattr(one, name) for one in found])
 
-def _points(variant: str, number: int, branch: "Branch") -> xr.Dataset:
-    found = branch.to_dataset()
-    multipliers = found["multipliers"].values
-    stability = np.where(found["neutral"], 0, np.where(found["stable"], 1, -1)).astype(np.int8)
+    signatures = [
+        " ".join(REGIMES[regime] for regime in point.orbit.signature)
+        for one in found
+        for point in one.points
+    ]
+    stability = np.where(along("neutral"), 0, np.where(along("stable"), 1, -1))
     flags = {
         "flag_values": np.array(list(STABILITY), np.int8),
         "flag_meanings": " ".join(STABILITY.values()),
     }
-    size = found.sizes["point"]
-    signatures = [" ".join(branch.at(i).signature) for i in range(size)]
-    columns: dict[str, tuple[Any, str, dict[str, Any]]] = {
-        "variant": (np.full(size, variant, object), "name of the damping variant", {}),
-        "branch": (np.full(size, number, np.int32), "number of the branch of its variant", {}),
+    columns: dict[str, tuple[np.ndarray, str, dict[str, Any]]] = {
+        "variant": (
+            np.repeat(np.array(variants, object), sizes),
+            "name of the damping variant",
+            {},
+        ),
+        "branch": (
+            np.repeat(np.array(numbers, np.int32), sizes),
+            "number of the branch of its variant",
+            {},
+        ),
         "periods": (
-            np.full(size, branch.orbit.periods, np.int32),
+            np.repeat(np.array(periods, np.int32), sizes),
             "least period of the orbit, in mesh periods",
             {},
         ),
-        "stability": (stability, "whether the orbit is stable", flags),
-        "signature": (np.array(signatures, object), "regimes of one period, in their order", {}),
+        "stability": (stability.astype(np.int8), "whether the orbit is stable", flags),
+        "signature": (
+            np.array(signatures, object),
+            "regimes of one period, in their order",
+            {},
+        ),
     }
-    kept = found[["nu", "y_max", "y_max_rel", "y_min", "y_min_rel"]]
+    dataset = xr.Dataset()
+    dataset["nu"] = ("point", along("values"), {"units": "1", "long_name": "mesh frequency nu_s"})
+    heights = {
+        "y_max": (("point",), along("y_max"), "maximum of y"),
+        "y_min": (("point",), along("y_min"), "minimum of y"),
+    }
+    dataset = dataset.merge(with_lengths(heights, static_deflection))
     for name, (values, what, more) in columns.items():
         units = {} if values.dtype == object else {"units": "1"}
-        kept[name] = ("point", values, {**units, "long_name": what, **more})
+        dataset[name] = ("point", values, {**units, "long_name": what, **more})
+    multipliers = along("multipliers")
     for part, values in (("real", multipliers.real), ("imaginary", multipliers.imag)):
         stated = {"units": "1", "long_name": f"{part} part of the Floquet multipliers"}
-        kept[f"multipliers_{part}"] = (("point", "multiplier"), values, stated)
-    return kept.drop_attrs(deep=False)
+        dataset[f"multipliers_{part}"] = (("point", "multiplier"), values, stated)
+    return dataset
 
 
 def rows(variant: str, branches: Sequence["Branch"], parameters: Mapping[str, Any]) -> list[Row]:
@@ -96,8 +131,3 @@ def _row(variant: str, number: int, point: "SpecialPoint") -> Row:
         "signature": " ".join(point.orbit.signature),
         "state": found.state.tolist(),
     }
-
-
-def joined(tables: Iterable[xr.Dataset]) -> xr.Dataset:
-    """Return the tables of several variants as one."""
-    return xr.concat(list(tables), "point", combine_attrs="drop")

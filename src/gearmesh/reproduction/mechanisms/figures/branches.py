@@ -1,5 +1,7 @@
 """Branches of orbits under the dots of Figs. 2 and 3."""
 
+from collections import defaultdict
+
 import numpy as np
 import xarray as xr
 from matplotlib.artist import Artist
@@ -24,6 +26,8 @@ COLUMNS = (("lubricant", "•", palette.RED), ("material", "□", palette.BLUE))
 
 STYLES = {1: {"lw": 1.1, "ls": "-"}, 0: {"lw": 0.8, "ls": "-"}, -1: {"lw": 0.8, "ls": (0, (3, 2))}}
 """Lines of stable, neutral and unstable orbits; neutral ones are grey."""
+
+HEIGHTS = ("y_max_rel", "y_min_rel")
 
 _FARTHEST = 1.25  # of the backlash, in pictures
 
@@ -83,26 +87,30 @@ def draw_dots(axes: Axes, curve: xr.Dataset) -> None:
 
 
 def draw_lines(axes: Axes, branches: xr.Dataset, name: str, colour: str) -> None:
-    """Draw y_max and y_min along all branches of a variant, in the style of their stability."""
-    own = branches.isel(point=np.flatnonzero(branches["variant"] == name))
+    """Draw y_max and y_min along all branches of a variant, in the style of their stability.
+
+    One line with gaps holds all pieces of one style: matplotlib takes much longer for many lines.
+    """
+    columns = ("branch", "periods", "stability", "nu", *HEIGHTS)
+    chosen = branches["variant"].values == name
+    own = {column: branches[column].values[chosen] for column in columns}
+    pieces: defaultdict[tuple[int, str], list[np.ndarray]] = defaultdict(list)
     for number in np.unique(own["branch"]):
-        branch = own.isel(point=np.flatnonzero(own["branch"] == number))
-        nu, stability = branch["nu"].values, branch["stability"].values
-        of_period = {1: colour, 2: palette.GREEN}.get(int(branch["periods"][0]), palette.VIOLET)
-        ends = np.flatnonzero(np.diff(stability)) + 1
-        for piece in np.split(np.arange(nu.size), ends):
+        points = np.flatnonzero(own["branch"] == number)
+        period, stability = int(own["periods"][points[0]]), own["stability"][points]
+        of_period = {1: colour, 2: palette.GREEN}.get(period, palette.VIOLET)
+        for piece in np.split(points, np.flatnonzero(np.diff(stability)) + 1):
+            kind = int(own["stability"][piece[0]])
             # A piece reaches to the first point of the next one, so that no gap is left.
-            piece = np.append(piece, min(piece[-1] + 1, nu.size - 1))
-            kind = int(stability[piece[0]])
-            tint = palette.GREY if kind == 0 else of_period
-            for y in ("y_max_rel", "y_min_rel"):
-                axes.plot(
-                    nu[piece],
-                    branch[y].values[piece],
-                    color=tint,
-                    zorder=2.5 + kind,
-                    **STYLES[kind],
-                )
+            piece = np.append(piece, min(piece[-1] + 1, points[-1]))
+            pieces[kind, palette.GREY if kind == 0 else of_period].append(piece)
+    for (kind, tint), drawn in pieces.items():
+        for y in HEIGHTS:
+            line = (
+                np.concatenate([np.append(own[column][piece], np.nan) for piece in drawn])
+                for column in ("nu", y)
+            )
+            axes.plot(*line, color=tint, zorder=2.5 + kind, **STYLES[kind])
 
 
 def limit(axes: Axes, backlash: float) -> None:
@@ -113,22 +121,20 @@ def limit(axes: Axes, backlash: float) -> None:
 
 def draw_marks(axes: Axes, special: list[Row], name: str) -> None:
     """Mark the special points of the orbits of one mesh period."""
-    for row in special:
-        if row["variant"] != name or "parameters" in row or row["periods"] > 1:
-            continue
-        filled = palette.INK if row["kind"] == "fold" else "white"
-        for y in ("y_max_rel", "y_min_rel"):
-            axes.plot(
-                row["nu"],
-                row[y],
-                marker=MARKS.get(row["kind"], "*"),
-                ms=3.6,
-                mew=0.7,
-                mec=palette.INK,
-                mfc=filled,
-                ls="none",
-                zorder=5,
-            )
+    own = [row for row in special if row["variant"] == name and row["periods"] == 1]
+    own = [row for row in own if "parameters" not in row]
+    for kind in dict.fromkeys(row["kind"] for row in own):
+        places = [(row["nu"], row[y]) for row in own if row["kind"] == kind for y in HEIGHTS]
+        axes.plot(
+            *zip(*places, strict=True),
+            marker=MARKS.get(kind, "*"),
+            ms=3.6,
+            mew=0.7,
+            mec=palette.INK,
+            mfc=palette.INK if kind == "fold" else "white",
+            ls="none",
+            zorder=5,
+        )
 
 
 def handles() -> list[Artist]:
