@@ -1,5 +1,6 @@
 """Branches of orbits and their special points, against closed forms and other ways to them."""
 
+from collections import Counter
 from dataclasses import replace
 
 import numpy as np
@@ -7,10 +8,12 @@ import pytest
 from problems import problem
 from scipy.optimize import brentq
 
+import gearmesh as gm
 from gearmesh.dynamics.continuation.branches import double_period, follow
 from gearmesh.dynamics.continuation.walks import CLOSED, HALVED, LIMIT
-from gearmesh.dynamics.periodic.orbits import LARGEST_RESIDUAL, find_orbit
+from gearmesh.dynamics.periodic.orbits import LARGEST_RESIDUAL, correct, find_orbit
 from gearmesh.errors import NoOrbit
+from gearmesh.model.variants import variant
 from gearmesh.solvers.reduced.derivatives.variational import KIND, SWITCH, VELOCITY
 
 HEAVY = {"body_mass": 1000.0}
@@ -171,3 +174,36 @@ def test_a_start_outside_the_range_is_said():
     with pytest.raises(NoOrbit, match="outside"):
         follow(orbit, "nu", (0.8, 1.2))
     assert CLOSED not in follow(orbit, "nu", (0.69, 0.71)).ends
+
+
+@pytest.mark.parametrize(
+    ("name", "nu", "state", "periods", "kinds"),
+    [
+        (
+            "d-lubricant",
+            0.785,
+            [1.5657076, 0.483173535, -1.99885662, 9.83725519e-04],
+            4,
+            {"fold": 2, "grazing_front": 4},
+        ),
+        (
+            "c-lubricant",
+            0.635,
+            [2.02224615, -0.633408858, -1.99688967, -1.22484934e-03],
+            6,
+            {"fold": 2, "grazing_front": 6},
+        ),
+    ],
+)
+def test_an_isola_is_the_same_from_each_of_its_mesh_periods(name, nu, state, periods, kinds):
+    """Two orbits come as close as 5e-4 to each other in the one; grazings come in pairs in both."""
+    orbit = correct(gm.paper().problem(variant(name), nu), np.array(state), periods)
+    found = []
+    for start in orbit.points:
+        branch = follow(correct(orbit.problem, start, periods), "nu", (0.6, 1.2))
+        assert branch.ends == (CLOSED, CLOSED)
+        found.append(sorted((point.kind, point.nu) for point in branch.special))
+    assert Counter(kind for kind, _ in found[0]) == kinds
+    for other in found[1:]:
+        assert [kind for kind, _ in other] == [kind for kind, _ in found[0]]
+        assert [nu for _, nu in other] == pytest.approx([nu for _, nu in found[0]], abs=1e-10)

@@ -73,7 +73,7 @@ def test_jacobian_is_the_limit_of_differences(name):
 
 def test_steps_do_not_matter():
     case = problem(0.9, "c-lubricant", backlash=1.0)
-    whole, fine = (passage(case, REST, 5, longest_angle=angle) for angle in (1.0, 0.3))
+    whole, fine = (passage(case, REST, 5, share=share) for share in (1.0, 0.3))
     np.testing.assert_allclose(fine.end, whole.end, atol=1e-12, rtol=0)
     np.testing.assert_allclose(fine.jacobian, whole.jacobian, atol=1e-11, rtol=0)
 

@@ -107,6 +107,29 @@ def test_a_point_that_a_branch_does_not_have_is_one_line(orbit):
         branch.at(10**6)
 
 
+def test_a_branch_is_resampled_at_values_with_units(pair, orbit):
+    branch = gm.follow(orbit, "nu", (0.68, 0.72))
+    speed = f"{0.69 * pair.resonance_speed!r} rpm"
+    found = branch.resampled([0.71, speed, np.float64(0.7)]).to_dataset()
+    assert found.nu.values.tolist() == pytest.approx([0.69, 0.7, 0.71], rel=1e-12)
+    alone = gm.find_orbit(pair, orbit.variant.name, 0.69).to_dataset()
+    assert float(found.y_max_rel[0]) == pytest.approx(float(alone.y_max_rel), abs=1e-11)
+    assert branch.resampled(0.7).at(0).nu == 0.7
+    with pytest.raises(gm.NoOrbit, match="none of the values of nu"):
+        branch.resampled([0.5])
+    for wrong, shown in (("fast", "'fast'"), ([0.7, -1.0], "-1"), (["7 mm"], "'7 mm'")):
+        with pytest.raises(gm.InputError, match=f"^nu: found {shown}"):
+            branch.resampled(wrong)
+
+
+def test_a_parameter_of_the_general_solver_is_resampled(pair):
+    branch = gm.follow(gm.find_orbit(pair, "c-material", 0.62), "damping", (3.0, 6.0))
+    found = branch.resampled(["4 N s/mm", 5.0])
+    for point, value in enumerate((4.0, 5.0)):
+        there = gm.find_orbit(pair.replace(damping=f"{value} N s/mm"), "c-material", 0.62)
+        assert found.at(point).found.y_max == pytest.approx(there.found.y_max, abs=1e-10)
+
+
 def test_a_parameter_with_a_unit_is_followed(pair):
     orbit = gm.find_orbit(pair, "c-material", 0.62)
     branch = gm.follow(orbit, "damping", ("3 N s/mm", "6 N s/mm"))

@@ -1,11 +1,13 @@
 """Branches of orbits and curves of special points, with units."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any
 
 import numpy as np
 import xarray as xr
+from numpy.typing import ArrayLike
 
 from gearmesh.dynamics.continuation import branches, special_curves, special_points
 from gearmesh.dynamics.continuation.curves import Family
@@ -18,6 +20,7 @@ from gearmesh.interface.parameters import (
     declared,
     number_of,
     read_limits,
+    read_values,
     static_deflection,
     with_number,
 )
@@ -98,6 +101,33 @@ class Branch:
         point = read_whole("point", point, -size, size - 1)
         found, value = self.found.orbits[point], float(self.found.values[point])
         return _at_value(self.orbit, self.parameter, value, found)
+
+    def resampled(self, values: ArrayLike | Sequence[str]) -> "Branch":
+        """Return the same branch with points at values of the parameter instead of its own.
+
+        The orbits are predicted by polynomials through those of this branch, and corrected by
+        Newton's method. So they are found faster than one by one.
+
+        Parameters
+        ----------
+        values : array_like
+            Numbers in the parameter's unit, or texts with units, as the limits of `follow`.
+
+        Returns
+        -------
+        Branch
+            One point for each passage of the branch through a value, in the order of the branch.
+            Special points and ends stay as they are.
+
+        Raises
+        ------
+        NoOrbit
+            If the branch passes none of the values, or an orbit is not found.
+        InputError
+            One line, if a value is wrong.
+        """
+        wanted = read_values(self.orbit.pair, self.parameter, values)
+        return Branch(self.orbit, self.found.resampled(wanted))
 
     @cached_property
     def special(self) -> list[SpecialPoint]:

@@ -105,13 +105,18 @@ def read_limits(pair: Pair, name: str, limits: object) -> tuple[float, float]:
     ends = several(limits)
     if len(ends) != 2:
         raise InputError(f"limits of {name}: found {shown(limits)}; allowed is (low, high)")
-    low, high = (_read_limit(pair, name, bare(end)) for end in ends)
+    low, high = (_read_value(pair, name, bare(end), "limits of ") for end in ends)
     if not low < high:
         raise InputError(f"limits of {name}: found ({low:g}, {high:g}); allowed is low < high")
     return low, high
 
 
-def _read_limit(pair: Pair, name: str, end: object) -> float:
+def read_values(pair: Pair, name: str, values: object) -> np.ndarray:
+    """Read values of a parameter."""
+    return np.array([_read_value(pair, name, bare(value)) for value in several(values)])
+
+
+def _read_value(pair: Pair, name: str, end: object, what: str = "") -> float:
     stated = _declaration(name)
     unit, least, greatest = (stated[key] for key in ("unit", "low", "high"))
     written = "" if unit == "1" else f" {unit}"
@@ -124,9 +129,9 @@ def _read_limit(pair: Pair, name: str, end: object) -> float:
         number = units.parse(value, unit if isinstance(value, str) else "1")
         number = number if isinstance(value, str) else float(value)
     except ValueError as error:
-        raise InputError(f"limits of {name}: found {shown(end)}; {error}") from None
+        raise InputError(f"{what}{name}: found {shown(end)}; {error}") from None
     if not least <= number <= greatest:
         raise InputError(
-            f"limits of {name}: found {shown(end)}; allowed is {least:g} to {greatest:g}{written}"
+            f"{what}{name}: found {shown(end)}; allowed is {least:g} to {greatest:g}{written}"
         )
     return number

@@ -1,17 +1,19 @@
 """Branches of orbits: how a periodic motion changes with a parameter, and where it ends."""
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import cached_property, partial
 from typing import overload
 
 import numpy as np
 
-from gearmesh.dynamics.continuation.curves import Curve, Family
+from gearmesh.dynamics.continuation.curves import Curve, Family, unit_of
 from gearmesh.dynamics.continuation.points import Point
+from gearmesh.dynamics.continuation.resampling import resampled
 from gearmesh.dynamics.continuation.special_points import SpecialPoint, special_points
 from gearmesh.dynamics.continuation.suspects import suspects
 from gearmesh.dynamics.continuation.walks import (
+    CLOSED,
     LONGEST_STEP,
     Piece,
     check_inside,
@@ -21,11 +23,10 @@ from gearmesh.dynamics.continuation.walks import (
     walk,
 )
 from gearmesh.dynamics.periodic.shots import Shot
+from gearmesh.errors import NoOrbit
 from gearmesh.model.problem import Problem
 
 _AMPLITUDE = 1e-3  # of the first orbit after a flip
-_SAME_VALUE = 1e-9  # distance in the parameter of special points that are the same
-_SAME_HEIGHT = 1e-6  # their distance in y_max
 
 
 @dataclass(frozen=True)
@@ -45,6 +46,8 @@ class Branch:
     ends : tuple of two str
         Why the branch ends at its first and at its last point: `LIMIT`, `CLOSED`, `HALVED`, `FAR`,
         or the reason why the corrector failed.
+    chosen : list of Piece, optional
+        The pieces with points at chosen values of the parameter.
     """
 
     parameter: str
@@ -52,11 +55,29 @@ class Branch:
     phase: float
     located: list[tuple[str, Point]]
     ends: tuple[str, str]
+    chosen: list[Piece] = field(default_factory=list)
 
     @cached_property
     def points(self) -> list[Point]:
         """The branch, point by point."""
-        return points_of(self.pieces)
+        return points_of(self.chosen or self.pieces)
+
+    def resampled(self, values: np.ndarray) -> "Branch":
+        """Return the branch with points at values of the parameter instead of its own.
+
+        Parameters
+        ----------
+        values : ndarray, shape (n,)
+
+        Raises
+        ------
+        NoOrbit
+            If the branch passes none of the values, or an orbit is not found.
+        """
+        chosen = resampled(self.pieces, np.unique(values), CLOSED in self.ends)
+        if not chosen:
+            raise NoOrbit(f"the branch passes none of the values of {self.parameter}")
+        return replace(self, chosen=chosen)
 
     @cached_property
     def special(self) -> list[SpecialPoint]:
@@ -170,7 +191,7 @@ def follow(
     curve = Curve(
         family,
         orbit.periods,
-        (high - low,),
+        (unit_of(low, high),),
         moved.problem.initial_phase,
         moved,
         stretches=stretches,
@@ -185,7 +206,7 @@ def follow(
         parameter,
         pieces,
         phase,
-        _each_once(located) if back is ahead else located,
+        located,
         (back.reason, ahead.reason),
     )
 
@@ -203,20 +224,6 @@ def _special(pieces: list[Piece]) -> list[tuple[str, Point]]:
         for i, kinds in suspects(piece.points)
         for found in special_points(piece.curve, piece.points, i, kinds)
     ]
-
-
-def _each_once(special: list[tuple[str, Point]]) -> list[tuple[str, Point]]:
-    """Leave out the special points that a closed branch passes again behind its first point."""
-    kept: list[tuple[str, Point]] = []
-    for kind, point in special:
-        again = any(
-            kind == other
-            and abs(point.values[0] - known.values[0]) < _SAME_VALUE
-            and abs(point.motion.y_max - known.motion.y_max) < _SAME_HEIGHT
-            for other, known in kept
-        )
-        kept += [] if again else [(kind, point)]
-    return kept
 
 
 def double_period(point: SpecialPoint, family: Family | None = None) -> tuple[Shot, float]:

@@ -7,9 +7,11 @@ arclength and not by a parameter.
 """
 
 import contextlib
+import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property, lru_cache
+from itertools import repeat
 
 import numpy as np
 
@@ -27,6 +29,15 @@ Family = Callable[..., Problem]
 
 _CONTRACTION = 0.01  # of the defect: gradients that reduce it so far are used again
 _DIFFERENCE = 1e-5
+
+
+def unit_of(low: float, high: float) -> float:
+    """Return the unit of a parameter that is followed over a range.
+
+    It is a power of two close to the width of the range, so that a value in this unit keeps all its
+    digits.
+    """
+    return math.ldexp(1.0, round(math.log2(high - low)))
 
 
 @dataclass(frozen=True)
@@ -119,6 +130,12 @@ class Curve:
             raise NoOrbit(f"the corrector stops at a residual of {best:.1e}")
         return self._with_tangent(found, found_orbit, along)
 
+    def landed(self, places: np.ndarray, normal: np.ndarray, alongs: np.ndarray) -> Sequence[Point]:
+        """Return the points as of `point` near several places, shape (n, k + m)."""
+        if self.tracer is not None and len(places):
+            return self.tracer.landed(places, normal, alongs, MOST_CORRECTIONS)
+        return [self.point(*one) for one in zip(places, repeat(normal), alongs, strict=False)]
+
     def beside(self, point: Point, length: float) -> Point:
         """Return the point at a small distance along the tangent, where the curve still is."""
         if self.tracer is not None:
@@ -203,8 +220,10 @@ class Curve:
             try:
                 following = self.point(place, normal, point.tangent)
                 moved, whole = following.place - place, np.linalg.norm(place - point.place)
-                straight = following.tangent @ point.tangent > curves.LEAST_ALIGNMENT
-                if straight and np.linalg.norm(moved) < curves.LARGEST_CORRECTION * whole:
+                aligned = float(following.tangent @ point.tangent)
+                # An arc that turns by an angle ends half of it, times its length, off the tangent.
+                bent = math.sqrt(max(1.0 - aligned**2, 0.0)) + curves.LARGEST_CORRECTION
+                if aligned > curves.LEAST_ALIGNMENT and np.linalg.norm(moved) < bent * whole:
                     return following, length
             except NoOrbit as error:
                 reason = str(error)
@@ -251,8 +270,7 @@ class Curve:
         return self.like.shot(problem, place[: -len(self.units)], self.periods)
 
     def _values(self, place: np.ndarray) -> tuple[float, ...]:
-        # Rounding to 15 digits restores a limit as it was stated.
-        return tuple(float(f"{value:.15g}") for value in place[-len(self.units) :] * self.units)
+        return tuple((place[-len(self.units) :] * self.units).tolist())
 
     def _defect(self, orbit: Shot) -> np.ndarray:
         defect = orbit.defect

@@ -7,7 +7,7 @@ from itertools import pairwise
 import numpy as np
 
 from gearmesh.dynamics.continuation.branches import field_family
-from gearmesh.dynamics.continuation.curves import Curve, Family
+from gearmesh.dynamics.continuation.curves import Curve, Family, unit_of
 from gearmesh.dynamics.continuation.points import Point
 from gearmesh.dynamics.continuation.special_points import SpecialPoint, search
 from gearmesh.dynamics.continuation.test_functions import (
@@ -97,7 +97,7 @@ def follow_special(
     for name, value, (low, high) in zip(parameters, values, limits, strict=True):
         check_inside(name, value, low, high)
     moved = point.orbit.at_phase(clear_phase(point.orbit))
-    units = tuple(high - low for low, high in limits)
+    units = tuple(unit_of(low, high) for low, high in limits)
     phase = moved.problem.initial_phase
     curve = Curve(family, moved.periods, units, phase, moved, _CONDITIONS[point.kind])
     back, ahead = walk(curve, _start(curve, moved, values), limits, longest_step)

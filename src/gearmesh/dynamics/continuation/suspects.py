@@ -44,14 +44,21 @@ def suspects(points: Sequence[Point]) -> list[tuple[int, set[str]]]:
     else:
         events = _of_points(points)
     functions = np.concatenate([bifurcation_values(points), events.heights, events.velocities])
-    kinds = [*BIFURCATIONS, *GRAZINGS, *["switching"] * len(events.velocities)]
-    heights = slice(len(BIFURCATIONS), len(BIFURCATIONS) + len(GRAZINGS))
+    each = len(events.heights) // len(GRAZINGS)
+    kinds = [
+        *BIFURCATIONS,
+        *(kind for kind in GRAZINGS for _ in range(each)),
+        *["switching"] * len(events.velocities),
+    ]
+    heights = slice(len(BIFURCATIONS), len(BIFURCATIONS) + len(events.heights))
     passes = events.beyond[:, 1:] != events.beyond[:, :-1]
     grazes = passes.any(axis=0)
+    comparable = np.ones((len(functions), len(points) - 1), bool)
+    comparable[heights] = events.extrema[1:] == events.extrema[:-1]
     left, right = functions[:, :-1], functions[:, 1:]
     change = np.zeros((len(functions), len(points) + 1))  # nothing changes beyond the ends
     with np.errstate(invalid="ignore"):
-        change[:, 1:-1] = right - left
+        change[:, 1:-1] = np.where(comparable, right - left, np.nan)
         size = np.abs(change)
         nearby = np.fmax(np.fmax(size[:, :-2], size[:, 2:]), size[:, 1:-1])
         near = np.fmin(np.abs(left), np.abs(right)) < _MARGIN * nearby
@@ -59,8 +66,8 @@ def suspects(points: Sequence[Point]) -> list[tuple[int, set[str]]]:
         goes_on[heights] = False
         goes_on[:, 1:-1] &= ~(grazes[1:] | grazes[:-1])
         near &= ~(goes_on[:, 1:] & goes_on[:, :-1])
-        near |= left * right <= 0.0
-    near[heights] |= passes
+        near |= comparable & (left * right <= 0.0)
+    near[heights] |= np.repeat(passes, each, axis=0)
     found: dict[int, set[str]] = {}
     for i, k in np.argwhere(near.T).tolist():
         found.setdefault(i, set()).add(kinds[k])
@@ -72,8 +79,12 @@ class _Events(NamedTuple):
 
     Attributes
     ----------
-    heights : ndarray, shape (2, n)
-        The least distances between extrema of y and the ends of regimes, front and back.
+    heights : ndarray, shape (2 k, n)
+        The distances of extrema from the front end of their regime, then from the back end: first
+        the least one, then those of all extrema in their order in time. A pair of grazings may
+        leave the least distance, and the regimes that are passed, as they were.
+    extrema : ndarray of int, shape (n,)
+        How many extrema each orbit has.
     velocities : ndarray, shape (m, n)
         The velocities where C(t) jumps. Such a velocity counts only if y'' changes sign at the
         jump, at this point or a neighbouring one; otherwise it is not-a-number.
@@ -82,6 +93,7 @@ class _Events(NamedTuple):
     """
 
     heights: np.ndarray
+    extrema: np.ndarray
     velocities: np.ndarray
     beyond: np.ndarray
 
@@ -94,10 +106,23 @@ def _of_points(points: Sequence[Point]) -> _Events:
     events = np.array([one[:fewest] for one in jumps])
     turning = events[:, :, BEFORE] * events[:, :, AFTER] < 0.0
     return _Events(
-        np.array([[np.abs(h).min(initial=np.inf) for h in heights] for heights in both]),
+        np.concatenate([_with_least(_side_by_side(heights)) for heights in both]),
+        np.array([len(heights) for heights in both[0]]),
         _counting(events[:, :, VELOCITY].T, turning.T),
         np.array([[(h < 0.0).sum() for h in heights] for heights in both]),
     )
+
+
+def _side_by_side(heights: list[np.ndarray]) -> np.ndarray:
+    """Return the heights of each orbit in a column; not-a-number fills the shorter ones."""
+    most = max(map(len, heights))
+    return np.array([np.append(one, np.full(most - len(one), np.nan)) for one in heights]).T
+
+
+def _with_least(heights: np.ndarray) -> np.ndarray:
+    """Return heights, and above them the least distance from 0 in each column."""
+    least = np.fmin.reduce(np.abs(heights), axis=0, initial=np.inf)
+    return np.concatenate([least[None], heights])
 
 
 def _of_track(track: Track) -> _Events:
@@ -106,12 +131,17 @@ def _of_track(track: Track) -> _Events:
     events, first = np.concatenate(track.events), np.cumsum(counts) - counts
     kind, height = events[:, KIND], events[:, HEIGHT]
     levels = np.array([[0.0], [-tracer.problem.backlash]])
-    away = np.where(kind == TURN, np.abs(height - levels), np.inf)
+    turns, points = kind == TURN, np.repeat(np.arange(len(track)), counts)
+    extrema = np.add.reduceat(turns, first, dtype=int)
+    order = np.cumsum(turns) - np.repeat(np.cumsum(extrema) - extrema, counts) - 1
+    heights = np.full((extrema.max(), len(track)), np.nan)
+    heights[order[turns], points[turns]] = height[turns]
     passes = (kind == CROSSING) & (height == levels)
     jumping = (kind == SWITCH) & tracer.jumping[events[:, SEGMENT].astype(int)]
     jumps = events[jumping].reshape(len(track), -1, EVENT_SIZE).T
     return _Events(
-        np.minimum.reduceat(away, first, axis=1),
+        np.concatenate([_with_least(heights - level) for level in levels]),
+        extrema,
         _counting(jumps[VELOCITY], jumps[BEFORE] * jumps[AFTER] < 0.0),
         np.add.reduceat(passes, first, axis=1, dtype=int),
     )

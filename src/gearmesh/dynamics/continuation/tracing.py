@@ -8,7 +8,8 @@ from typing import overload
 import numpy as np
 
 from gearmesh.dynamics.continuation.points import Point
-from gearmesh.dynamics.periodic.orbits import Orbit, extrema_of, jumping_segments, jumps_of
+from gearmesh.dynamics.periodic.events import extrema_of, jumping_segments, jumps_of
+from gearmesh.dynamics.periodic.orbits import Orbit
 from gearmesh.errors import NoOrbit
 from gearmesh.model.problem import Problem
 from gearmesh.solvers.reduced.derivatives import curves
@@ -67,17 +68,22 @@ class Tracer:
     def _landed(
         self, place: np.ndarray, normal: np.ndarray, along: np.ndarray, corrections: int
     ) -> Point:
-        points, events, _ = trace(self.stated, place, normal, self.unit, corrections)
-        row = points[0]
-        if row[curves.OUTCOME] != COMPLETE:
-            raise NoOrbit(f"the motion ends with {STATUSES[int(row[curves.OUTCOME])]}")
-        defect = (row[curves.END : curves.JACOBIAN] - row[:SIZE]).tolist()
-        if corrections and not all(abs(part) < LARGEST_RESIDUAL for part in defect):
-            size = max(map(abs, defect))
-            raise NoOrbit(f"the corrector stops at a residual of {size:.1e}")
-        if row[curves.TANGENT : curves.DETERMINANT] @ along < 0.0:
-            row[curves.TANGENT : curves.OUTCOME] *= -1.0
-        return self.read(row, events[0, : int(row[curves.N_EVENTS])])
+        return self.landed(place[None], normal, along, corrections)[0]
+
+    def landed(
+        self, places: np.ndarray, normal: np.ndarray, along: np.ndarray, corrections: int
+    ) -> "Track":
+        """Return the points near several places, each in its plane, as of `Curve.point`."""
+        rows, events, _ = trace(self.stated, places, normal, self.unit, corrections)
+        outcomes = rows[:, curves.OUTCOME]
+        if (outcomes != COMPLETE).any():
+            raise NoOrbit(f"the motion ends with {STATUSES[int(outcomes.max())]}")
+        residual = np.abs(rows[:, curves.END : curves.JACOBIAN] - rows[:, :SIZE]).max()
+        if corrections and not residual < LARGEST_RESIDUAL:
+            raise NoOrbit(f"the corrector stops at a residual of {residual:.1e}")
+        back = (rows[:, curves.TANGENT : curves.DETERMINANT] * along).sum(axis=1) < 0.0
+        rows[back, curves.TANGENT : curves.OUTCOME] *= -1.0
+        return Track(self, rows, _recorded(rows, events))
 
     def ahead(
         self, point: Point, length: float, longest: float, limits: tuple[float, float]
@@ -96,9 +102,7 @@ class Tracer:
         )
         if len(rows) == 1:
             raise NoOrbit("it bends too sharply")
-        counts = rows[1:, curves.N_EVENTS].astype(int).tolist()
-        found = [one[:count] for one, count in zip(events[1:], counts, strict=False)]
-        return Track(self, rows[1:], found), length
+        return Track(self, rows[1:], _recorded(rows[1:], events[1:])), length
 
     def track(self, point: Point) -> "Track":
         """Return a track of one point, in the direction of the point's tangent."""
@@ -179,6 +183,12 @@ class _Traced:
         return float(self.row[curves.Y_MIN])
 
 
+def _recorded(rows: np.ndarray, events: np.ndarray) -> list[np.ndarray]:
+    """Return the events of each row, out of the room for them."""
+    counts = rows[:, curves.N_EVENTS].astype(int).tolist()
+    return [one[:count] for one, count in zip(events, counts, strict=False)]
+
+
 def _orbit(motion: _Traced) -> Orbit:
     tracer, row = motion.tracer, motion.row
     moved = passage_of(tracer.stated, tracer.unit, row, motion.events)
@@ -217,10 +227,12 @@ class Track(Sequence[Point]):
 
 def chained(first: Sequence[Point], second: Sequence[Point]) -> Sequence[Point]:
     """Return the points of two sequences in one."""
-    if isinstance(first, Track) and isinstance(second, Track):
+    if not first or not second:
+        return first or second
+    if isinstance(first, Track) and isinstance(second, Track) and first.tracer is second.tracer:
         rows = np.concatenate([first.rows, second.rows])
         return Track(first.tracer, rows, first.events + second.events)
-    return [*first, *second] if second else first
+    return [*first, *second]
 
 
 def backwards(points: Sequence[Point]) -> Sequence[Point]:
@@ -237,6 +249,14 @@ def first_values(points: Sequence[Point]) -> np.ndarray:
     if isinstance(points, Track):
         return points.rows[:, SIZE] * points.tracer.unit
     return np.array([point.values[0] for point in points])
+
+
+def geometry(points: Sequence[Point]) -> tuple[np.ndarray, np.ndarray]:
+    """Return the places and the tangents of points, shape (n, k + m)."""
+    if isinstance(points, Track):
+        rows = points.rows
+        return rows[:, : curves.DIMENSIONS], rows[:, curves.TANGENT : curves.DETERMINANT]
+    return np.array([one.place for one in points]), np.array([one.tangent for one in points])
 
 
 def monodromies(rows: np.ndarray) -> np.ndarray:

@@ -168,8 +168,9 @@ def _up_to_end(
     for i in range(len(ahead)):
         if below[i] != below[i + 1]:
             before = ahead[i - 1] if i else point
-            if before is not start and _is_back(curve, before, ahead[i], start):
-                return ahead[: i + 1], CLOSED
+            back = None if before is start else _back(curve, before, ahead[i], start)
+            if back is not None:
+                return chained(ahead[:i], curve.track(back)), CLOSED
     if outside is not None:
         end = _at_limit(curve, ahead[-1] if ahead else point, outside, limits)
         ahead = chained(ahead, end)
@@ -241,15 +242,19 @@ def _between(curve: Curve, point: Point, following: Point, value: float, i: int 
     return curve.point(place, np.eye(len(place))[k + i], following.tangent)
 
 
-def _is_back(curve: Curve, point: Point, following: Point, start: Point) -> bool:
-    """Return whether a closed branch is at its first point again between two points."""
-    if not following.slope * start.slope > 0.0:
-        return False
-    here = _between(curve, point, following, start.values[0]).orbit
+def _back(curve: Curve, point: Point, following: Point, start: Point) -> Point | None:
+    """Return the first point of a closed branch, if the branch passes it between two points."""
+    level = following.values[0] == point.values[0]
+    if level or not following.slope * start.slope > 0.0:
+        return None
+    found = _between(curve, point, following, start.values[0])
+    if np.abs(found.place - start.place).max() < _SAME:
+        return start
+    here = found.orbit
     state = here.at_phase(start.orbit.problem.initial_phase).state
     for _ in range(curve.periods // here.repeats_after):
         if np.abs(state - start.orbit.state).max() < _SAME:
-            return True
+            return found
         shot = here.shot(start.orbit.problem, state, here.repeats_after)
         state = state + shot.defect
-    return False
+    return None

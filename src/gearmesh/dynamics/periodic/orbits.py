@@ -11,6 +11,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from gearmesh.dynamics.periodic.events import extrema_of, jumping_segments, jumps_of
 from gearmesh.dynamics.starts import starts
 from gearmesh.errors import NoOrbit
 from gearmesh.model.contact import CONTACT_LOSS, INVERSE_MESH, regime_of
@@ -18,7 +19,6 @@ from gearmesh.model.problem import Problem
 from gearmesh.solvers.reduced.derivatives.curves import FARTHEST, LARGEST_RESIDUAL
 from gearmesh.solvers.reduced.derivatives.period_map import (
     FIXED,
-    LONGEST_ANGLE,
     Passage,
     advance,
     passage,
@@ -28,14 +28,10 @@ from gearmesh.solvers.reduced.derivatives.period_map import (
     trace,
 )
 from gearmesh.solvers.reduced.derivatives.variational import (
-    AFTER,
     CROSSING,
     HEIGHT,
     KIND,
     REGIME,
-    SEGMENT,
-    SWITCH,
-    TIME,
     TURN,
 )
 from gearmesh.solvers.reduced.runs import is_reducible
@@ -268,7 +264,7 @@ class Orbit:
         inside[lost] = np.minimum(-turns[lost, HEIGHT], turns[lost, HEIGHT] - back)
         inside[inverse] = back - turns[inverse, HEIGHT]
         corrected = self.state + newton_correction(self.passage, self.state)
-        finer = passage(self.problem, corrected, self.periods, longest_angle=0.5 * LONGEST_ANGLE)
+        finer = passage(self.problem, corrected, self.periods, share=0.5)
         others = np.linalg.eigvals(finer.jacobian)
         changes = [float(np.abs(others - one).min()) for one in self.multipliers]
         product = np.linalg.det(self.passage.jacobian)
@@ -371,30 +367,6 @@ def correct(problem: Problem, state: np.ndarray, periods: int = 1) -> Orbit:
             if np.abs(end - orbit.state).max() < _SAME:
                 raise NoOrbit(f"Newton's method leads to an orbit of period {shorter}")
     return orbit
-
-
-def extrema_of(events: np.ndarray) -> np.ndarray:
-    """Return the extrema among the events of a passage, as of `Orbit.extrema`."""
-    found = [  # for the few events of one passage a list is faster than array operations
-        (event[TIME], event[HEIGHT], (event[AFTER] < 0.0) - (event[AFTER] > 0.0))
-        for event in events.tolist()
-        if event[KIND] == TURN
-    ]
-    return np.array(found, float).reshape(-1, 3)
-
-
-def jumps_of(events: np.ndarray, jumping: np.ndarray) -> np.ndarray:
-    """Return the events at which C(t) jumps, given `jumping_segments`."""
-    found = [
-        event for event in events.tolist() if event[KIND] == SWITCH and jumping[int(event[SEGMENT])]
-    ]
-    return np.array(found, float).reshape(-1, events.shape[1])
-
-
-def jumping_segments(segments: np.ndarray) -> np.ndarray:
-    """Return whether C(t) jumps at the start of each of the segments of `segments_of`."""
-    stiffness = segments[:, 1]
-    return stiffness != np.roll(stiffness, 1)
 
 
 def newton_correction(moved: Passage, state: np.ndarray) -> np.ndarray:

@@ -30,9 +30,7 @@ MOST_PERIODS = 2
 """Longest period of the orbits that are carried over to another pair."""
 
 _SPACING = 8  # points of a branch from one orbit that is carried over to the next
-_NEAR = 0.1  # difference of extremes from those between two points of a branch, in y_st
 _DECIMALS = 5  # of extremes, in y_st
-_AT = 1e-9  # distance in ν_s of a point that is at the frequency
 
 
 def all_branches(pair: Pair, variant: str, limits: Range, ends: Iterable[Orbit]) -> list[Branch]:
@@ -130,9 +128,7 @@ def further(known: Iterable[Branch], ends: Iterable[Orbit], limits: Range) -> It
         orbit = waiting.pop(0)
         if any(holds(branch, orbit) for branch in found):
             continue
-        branch = _followed(orbit, limits)
-        if branch is None:
-            continue
+        branch = follow(orbit, "nu", limits)
         found.append(branch)
         waiting[:0] = [
             point.orbit for point in branch.special if point.orbit.periods < orbit.periods
@@ -140,53 +136,18 @@ def further(known: Iterable[Branch], ends: Iterable[Orbit], limits: Range) -> It
         yield branch
 
 
-def _followed(orbit: Orbit, limits: Range) -> Branch | None:
-    """Follow an orbit; if that fails from one of its mesh periods, begin at the next one.
-
-    Rounding decides whether every special point can be located, so another state may succeed.
-    """
-    own = orbit.reduced
-    for state in own.points:
-        try:
-            begun = replace(orbit, found=orbits.correct(own.problem, state, own.periods))
-            return follow(begun, "nu", limits)
-        except NoOrbit:
-            continue
-    return None
-
-
 def holds(branch: Branch, orbit: Orbit) -> bool:
     """Return whether an orbit lies on a branch in ν_s.
 
-    Newton's method corrects the orbits between neighbouring points of the branch at the orbit's
-    ν_s. Extremes are compared, because they do not depend on the mesh period in which an orbit of
+    Extremes are compared, because they do not depend on the mesh period in which an orbit of
     several periods begins.
     """
-    found, wanted = branch.found, orbit.reduced
     if branch.orbit.periods != orbit.periods:
         return False
-    extremes = np.array([wanted.y_max, wanted.y_min])
-    curve = np.column_stack([found.y_max, found.y_min])
-    away = found.values - orbit.nu
-    away[np.abs(away) < _AT] = 0.0
-    for i in np.flatnonzero(away[:-1] * away[1:] <= 0.0).tolist():
-        change = away[i + 1] - away[i]
-        for share in (-away[i] / change,) if change else (0.0, 1.0):
-            height = curve[i] + share * (curve[i + 1] - curve[i])
-            if np.abs(height - extremes).max() > _NEAR:
-                continue
-            here, there = found.orbits[i].state, found.orbits[i + 1].state
-            # Neighbouring states may belong to different mesh periods of an orbit.
-            between = here + share * (there - here)
-            if any(_leads_to(wanted, state) for state in (between, here, there)):
-                return True
-    return False
-
-
-def _leads_to(orbit: orbits.Orbit, state: np.ndarray) -> bool:
-    """Return whether Newton's method leads from a state to an orbit, in any of its periods."""
     try:
-        found = orbits.correct(orbit.problem, state, orbit.periods)
+        there = branch.found.resampled(np.array([orbit.nu]))
     except NoOrbit:
         return False
-    return max(abs(found.y_max - orbit.y_max), abs(found.y_min - orbit.y_min)) < SAME
+    wanted = orbit.reduced
+    away = np.maximum(np.abs(there.y_max - wanted.y_max), np.abs(there.y_min - wanted.y_min))
+    return bool((away < SAME).any())

@@ -39,8 +39,12 @@ SHORTEST_STEP = 1e-7
 LEAST_ALIGNMENT = 0.97
 """Cosine of the largest angle between neighbouring tangents."""
 
-LARGEST_CORRECTION = 0.3
-"""Largest correction of a predicted place, as a share of the step."""
+LARGEST_CORRECTION = 0.003
+"""Largest correction of a predicted place, as a share of the step.
+
+A larger one may lead to another branch nearby. Where the prediction is a straight line, what the
+turn of the curve explains is allowed in addition.
+"""
 
 GROWTH = 1.4
 """Most by which a step is longer than the one before."""
@@ -224,6 +228,21 @@ def _predict(points, last, length, nodes, slopes, table):
 
 
 @inner
+def _goes_on(point, guess, normal, length, straight):
+    """Return whether a point continues the curve along `normal`, and is near where it was expected.
+
+    If `straight`, it was expected on the tangent, from which an arc departs as it turns.
+    """
+    moved, aligned = 0.0, 0.0
+    for j in range(DIMENSIONS):
+        moved += (point[j] - guess[j]) ** 2
+        aligned += point[TANGENT + j] * normal[j]
+    bent = np.sqrt(max(1.0 - aligned**2, 0.0)) if straight else 0.0
+    near = moved < (length * (bent + LARGEST_CORRECTION)) ** 2
+    return near and aligned > LEAST_ALIGNMENT
+
+
+@inner
 def is_clear(y, y_max, y_min, backlash):
     """Return whether y is at least half as far from the ends of regimes as an orbit ever gets."""
     middle = min(max(-0.5 * backlash, y_min), y_max)
@@ -235,7 +254,7 @@ def is_clear(y, y_max, y_min, backlash):
 
 @inner(inline="always")
 def trace(statement, unit, corrections, length, longest, limits, points, events, samples):
-    """Correct the first point, and follow the curve from there as far as there are rows.
+    """Correct points, or follow the curve from the first one as far as there are rows.
 
     Parameters
     ----------
@@ -245,14 +264,16 @@ def trace(statement, unit, corrections, length, longest, limits, points, events,
     unit : float
         Change of nu that counts like a change of 1 in the state.
     corrections : int
-        Most corrections of a point. The first point is only evaluated if there are more rows.
+        Most corrections of a point. The first point of a curve is only evaluated.
     length, longest : float
-        Length of the first step, and of the longest one.
+        Length of the first step, and of the longest one. If the length is 0, all rows hold points
+        to be corrected.
     limits : tuple of float
         Range of nu.
     points : ndarray, shape (n + 1, POINT_SIZE)
-        The first row holds a place, and in place of the tangent the normal of the plane in which
-        the point is searched for. The last row is room.
+        A row of a point to be corrected, and the first row of a curve, hold a place, and in place
+        of the tangent the normal of the plane in which the point is searched for. The last row is
+        room.
     events : ndarray, shape (n + 1, room, EVENT_SIZE)
     samples : ndarray, shape (n, 4)
         As for `propagate`, over all visits.
@@ -269,28 +290,26 @@ def trace(statement, unit, corrections, length, longest, limits, points, events,
     segments, matrix = np.empty_like(statement[0]), np.empty((DIMENSIONS, DIMENSIONS + 2))
     per_period = len(samples) * len(segments) // statement[4]
     room = samples, per_period, segments, np.empty(WORKSPACE), matrix
-    normal, origin = points[0, TANGENT : TANGENT + DIMENSIONS].copy(), np.empty(DIMENSIONS)
+    normal, origin, guess = np.empty((3, DIMENSIONS))
     nodes, slopes, table = np.empty((3, 2 * _HISTORY))
-    origin[:] = points[0, :DIMENSIONS]
-    most = corrections if len(points) == 2 else 0
     row = 0
     while row < len(points) - 1:
         point, before = points[row], points[row - 1]
-        if row > 0:
+        follows = row > 0 and length > 0.0
+        if follows:
             normal[:] = before[TANGENT : TANGENT + DIMENSIONS]
             origin[:] = before[:DIMENSIONS] + length * normal
             _predict(points, row - 1, length, nodes, slopes, table)
-        most = corrections if row > 0 or len(points) == 2 else 0
+            guess[:] = point[:DIMENSIONS]
+        else:
+            normal[:] = point[TANGENT : TANGENT + DIMENSIONS]
+            origin[:] = point[:DIMENSIONS]
+        most = corrections if follows or length == 0.0 else 0
         landed = _land(statement, unit, points, events, row, origin, normal, most, room)
-        if row == 0:
-            row = 1
+        if not follows:
+            row += 1
             continue
-        moved, aligned = 0.0, 0.0
-        for j in range(DIMENSIONS):
-            moved += (point[j] - origin[j]) ** 2
-            aligned += point[TANGENT + j] * normal[j]
-        straight = aligned > LEAST_ALIGNMENT and moved < (LARGEST_CORRECTION * length) ** 2
-        if not (landed and straight):
+        if not (landed and _goes_on(point, guess, normal, length, row == 1)):
             length *= 0.5
             if not length > SHORTEST_STEP:
                 return row, length

@@ -12,12 +12,12 @@ from gearmesh.model.segments import segments
 from gearmesh.solvers.compilation import persistent
 from gearmesh.solvers.limits import highest_frequency
 from gearmesh.solvers.reduced.derivatives import curves, variational
-from gearmesh.solvers.reduced.derivatives.deviations import DEVIATIONS, SIZE
+from gearmesh.solvers.reduced.derivatives.deviations import DEVIATIONS, ORDER, SIZE
 
 TOLERANCE = 1e-16
 """Bound of the last terms of a step, relative to the state: rounding decides the accuracy."""
 
-LONGEST_ANGLE = 1.0
+_LONGEST_ANGLE = 2.0
 """Bound of a step times the highest natural frequency."""
 
 STATUSES = ("complete", "too many steps", "too many events", "diverged")
@@ -90,7 +90,7 @@ def passage(
     state: np.ndarray,
     periods: int = 1,
     samples_per_period: int = 0,
-    longest_angle: float = LONGEST_ANGLE,
+    share: float = 1.0,
 ) -> Passage:
     """Return the motion from a state over whole mesh periods.
 
@@ -104,18 +104,16 @@ def passage(
         Mesh periods, >= 1.
     samples_per_period : int
         Samples of the time course in a mesh period.
-    longest_angle : float
-        Bound of a step times the highest natural frequency.
+    share : float
+        Share of each step that is taken, to see what the steps change.
     """
-    stated = statement(problem, periods, longest_angle)
+    stated = statement(problem, periods, share)
     samples = np.empty((samples_per_period * periods, 4))
     points, events, _ = trace(stated, np.append(state, 1.0), FIXED, problem.nu, samples=samples)
     return passage_of(stated, problem.nu, points[0], events[0], samples)
 
 
-def statement(
-    problem: Problem, periods: int = 1, longest_angle: float = LONGEST_ANGLE
-) -> Statement:
+def statement(problem: Problem, periods: int = 1, share: float = 1.0) -> Statement:
     """Return a problem and a number of mesh periods in the form that the compiled code takes."""
     parts = segments_of(problem)
     return (
@@ -124,8 +122,8 @@ def statement(
         float(problem.backlash),
         _bearings(problem),
         periods * len(parts),
-        longest_angle / highest_frequency(problem),
-        TOLERANCE,
+        share * _LONGEST_ANGLE / highest_frequency(problem),
+        TOLERANCE * share ** (ORDER + 1),
         float(problem.nu),
     )
 
@@ -148,8 +146,8 @@ def trace(
     ----------
     stated : tuple
         Of `statement`.
-    place, normal : ndarray, shape (5,)
-        The first point, and the normal of the plane in which it is corrected.
+    place, normal : ndarray, shape (5,) or (n, 5)
+        The first point, or all points, and the normals of the planes in which they are corrected.
     unit, corrections, length, longest, limits
         As for the compiled function.
     steps : int
@@ -158,10 +156,11 @@ def trace(
         Filled with samples of the last point, evenly over the mesh periods.
     """
     periods = stated[4] // len(stated[0])
-    points = np.empty((steps + 2, curves.POINT_SIZE))
-    events = np.empty((steps + 2, _EVENTS_PER_PERIOD * periods, variational.EVENT_SIZE))
-    points[0, : curves.DIMENSIONS] = place
-    points[0, curves.TANGENT : curves.DETERMINANT] = normal
+    given = place.size // curves.DIMENSIONS
+    points = np.empty((given + steps + 1, curves.POINT_SIZE))
+    events = np.empty((len(points), _EVENTS_PER_PERIOD * periods, variational.EVENT_SIZE))
+    points[:given, : curves.DIMENSIONS] = place
+    points[:given, curves.TANGENT : curves.DETERMINANT] = normal
     low, high = limits
     count, length = _trace(
         stated,

@@ -1,0 +1,169 @@
+"""Points of a branch at given values of its parameter."""
+
+from collections.abc import Sequence
+from functools import cache
+from itertools import pairwise
+
+import numpy as np
+
+from gearmesh.dynamics.continuation.curves import Curve
+from gearmesh.dynamics.continuation.points import Point
+from gearmesh.dynamics.continuation.tracing import chained, first_values, geometry
+from gearmesh.dynamics.continuation.walks import Piece
+from gearmesh.dynamics.continuation.zeros import length_between, zeros
+from gearmesh.errors import NoOrbit
+
+_SIDE = 3  # points on each side of an orbit from which it is predicted
+_STEADY = 0.02  # least slope of the parameter at points from which orbits are predicted
+
+
+def resampled(pieces: list[Piece], values: np.ndarray, closed: bool) -> list[Piece]:
+    """Return a branch with points at given values of its parameter instead of its own.
+
+    Parameters
+    ----------
+    pieces : list of Piece
+    values : ndarray, shape (n,)
+        In rising order, each once.
+    closed : bool
+        Whether the last point is the first one again.
+
+    Returns
+    -------
+    list of Piece
+        A point for each passage of the branch through one of the values, in the order of the
+        branch. The list is empty if there is none.
+
+    Raises
+    ------
+    NoOrbit
+        If Newton's method does not converge.
+    """
+    found: list[Piece] = []
+    for piece in pieces:
+        points = _passages(piece, values)
+        last = piece is pieces[-1] and not closed
+        if last and piece.points[-1].values[0] in values:
+            points = chained(points, piece.points[-1:])
+        if points:
+            before = found[-1].points[-1:] if found else []
+            found.append(Piece(piece.curve, chained(before, points)))
+    return found
+
+
+def _passages(piece: Piece, values: np.ndarray) -> Sequence[Point]:
+    """Return the points of a piece at the values, without its last point."""
+    curve, points, here = piece.curve, piece.points, first_values(piece.points).tolist()
+    places, tangents = geometry(points)
+    up = np.eye(places.shape[1])[-1]
+    steep = np.abs(tangents[:, -1]) > _STEADY
+    steady = steep[1:] & steep[:-1] & (tangents[1:, -1] * tangents[:-1, -1] > 0.0)
+    passed = [_from_to(values, *ends) for ends in pairwise(here)]
+    counts = np.where(steady, [len(one) for one in passed], 0)
+    intervals = np.repeat(np.arange(len(counts)), counts)
+    wanted = np.concatenate([values[:0], *(passed[i] for i in np.flatnonzero(counts))])
+    predicted = _predicted(places, tangents, steady, intervals, wanted / curve.units[0])
+    landed = curve.landed(predicted, up, np.sign(tangents[intervals, -1:]) * up)
+    found, first, ends = landed[:0], 0, np.cumsum(counts).tolist()
+    for i in np.flatnonzero(~steady).tolist():
+        found = chained(found, landed[first : ends[i]])
+        found = chained(found, _searched(curve, points[i], points[i + 1], values))
+        first = ends[i]
+    return chained(found, landed[first:])
+
+
+def _from_to(values: np.ndarray, start: float, end: float) -> np.ndarray:
+    """Return the values on the way from `start` to `end`, which does not count itself."""
+    if start < end:
+        return values[(values >= start) & (values < end)]
+    return values[(values <= start) & (values > end)][::-1]
+
+
+def _predicted(
+    places: np.ndarray,
+    tangents: np.ndarray,
+    steady: np.ndarray,
+    intervals: np.ndarray,
+    wanted: np.ndarray,
+) -> np.ndarray:
+    """Return the places of a curve at values of its parameter, by Hermite's interpolation.
+
+    Parameters
+    ----------
+    places, tangents : ndarray, shape (n, k + 1)
+        Of the known points.
+    steady : ndarray of bool, shape (n - 1,)
+        Whether the parameter is a coordinate of the curve between two points.
+    intervals : ndarray of int, shape (m,)
+        Where the wanted places are.
+    wanted : ndarray, shape (m,)
+        The parameter there, in units of the curve.
+
+    Returns
+    -------
+    ndarray, shape (m, k + 1)
+    """
+    rates = tangents / tangents[:, -1:]
+    found = np.empty((len(wanted), places.shape[1]))
+    surrounded = steady.copy()
+    for k in range(1, _SIDE):
+        surrounded[k:] &= steady[:-k]
+        surrounded[:-k] &= steady[k:]
+        surrounded[[*range(k), *range(-k, 0)]] = False
+    many = surrounded[intervals]
+    for side, which in ((1, ~many), (_SIDE, many)):
+        nodes = intervals[which, None] + np.arange(1 - side, side + 1)
+        found[which] = _interpolated(places[nodes], rates[nodes], wanted[which])
+    return found
+
+
+def _interpolated(places: np.ndarray, rates: np.ndarray, at: np.ndarray) -> np.ndarray:
+    """Return polynomials through places, with their rates, at values of the last coordinate.
+
+    Parameters
+    ----------
+    places, rates : ndarray, shape (m, n, k)
+        n places for each polynomial, and their derivatives with respect to the last coordinate.
+    at : ndarray, shape (m,)
+
+    Returns
+    -------
+    ndarray, shape (m, k)
+    """
+    nodes = np.repeat(places[..., -1], 2, axis=1)
+    factors = np.repeat(places, 2, axis=1)
+    changes = np.diff(places, axis=1) / np.diff(places[..., -1:], axis=1)
+    factors[:, 2::2], factors[:, 1::2] = changes, rates
+    for order in range(2, nodes.shape[1]):
+        apart = nodes[:, order:] - nodes[:, :-order]
+        factors[:, order:] = np.diff(factors[:, order - 1 :], axis=1) / apart[..., None]
+    found = factors[:, -1]
+    for i in range(nodes.shape[1] - 2, -1, -1):
+        found = found * (at - nodes[:, i])[:, None] + factors[:, i]
+    found[:, -1] = at
+    return found
+
+
+def _searched(curve: Curve, left: Point, right: Point, values: np.ndarray) -> list[Point]:
+    """Return the points at the values between two others, where the parameter may turn."""
+    reach = length_between(left, right) * curve.units[0]
+    ends, beside = (left.values[0], right.values[0]), cache(curve.beside)
+    found = [left] if left.values[0] in values else []
+    for value in values[(values > min(ends) - reach) & (values < max(ends) + reach)].tolist():
+
+        def away(point: Point, value: float = value) -> float:
+            return point.values[0] - value
+
+        passages = () if value in ends else zeros(curve, left, right, away, beside)
+        found += [_moved(curve, point, value) for _, point, _ in passages]
+    return sorted(found, key=lambda point: float(left.tangent @ point.place))
+
+
+def _moved(curve: Curve, point: Point, value: float) -> Point:
+    """Return a point of a curve, moved by a rounding error to a value of the parameter."""
+    place, up = point.place.copy(), np.zeros(len(point.place))
+    place[-1], up[-1] = value / curve.units[0], 1.0
+    try:
+        return curve.point(place, up, point.tangent)
+    except NoOrbit:  # at a fold itself
+        return point
