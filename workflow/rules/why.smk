@@ -11,6 +11,8 @@ rule basins:
         PLACES.log("basins"),
     benchmark:
         PLACES.benchmark("basins")
+    # The notebook waits for this job, and the figures can be drawn beside the notebook.
+    priority: 2
     params:
         made_of=PLAN.made_of("basins"),
     shell:
@@ -31,6 +33,8 @@ rule ensembles:
         PLACES.log("ensembles"),
     benchmark:
         PLACES.benchmark("ensembles")
+    # The notebook waits for this job, and the figures can be drawn beside the notebook.
+    priority: 2
     params:
         made_of=PLAN.made_of("ensembles"),
     shell:
@@ -47,6 +51,8 @@ rule special_curves:
         PLACES.log("special_curves"),
     benchmark:
         PLACES.benchmark("special_curves")
+    # The notebook waits for this job, and the figures can be drawn beside the notebook.
+    priority: 2
     params:
         made_of=PLAN.made_of("special_curves"),
     shell:
@@ -69,6 +75,8 @@ rule why:
         PLACES.executed_notebook(paths.WHY),
     benchmark:
         PLACES.benchmark("why")
+    # This notebook takes longest, so others are run beside it.
+    priority: 2
     params:
         made_of=PLAN.made_of("why"),
     shell:
