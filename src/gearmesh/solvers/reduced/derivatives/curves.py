@@ -57,6 +57,16 @@ _HISTORY = 3  # points from which the next is predicted
 
 
 @inner
+def _copy(source, target):
+    """Write numbers to the beginning of an array.
+
+    numba takes seconds to compile assignments between arrays, for the message of a failure.
+    """
+    for i in range(len(source)):
+        target[i] = source[i]
+
+
+@inner
 def _solve(matrix):
     """Reduce a matrix with extra columns so that these hold the solutions; return its determinant.
 
@@ -116,10 +126,11 @@ def _evaluate(statement, unit, point, events, room):
     """Move from the place of a point over the period, and write what it gives."""
     begun, laws, backlash, bearings, visits, longest, tolerance, nu = statement
     samples, per_period, segments, workspace, _ = room
-    segments[:, :] = begun
-    segments[:, 0] *= nu / (point[SIZE] * unit)
+    for i in range(len(segments)):
+        _copy(begun[i], segments[i])
+        segments[i, 0] *= nu / (point[SIZE] * unit)
     state = point[END : END + SIZE]
-    state[:] = point[:SIZE]
+    _copy(point[:SIZE], state)
     jacobian = point[JACOBIAN:TANGENT].reshape((SIZE, DEVIATIONS))
     jacobian[:, :] = 0.0
     for i in range(SIZE):
@@ -156,16 +167,17 @@ def _land(statement, unit, points, events, row, origin, normal, corrections, roo
     """
     matrix = room[-1]
     point, trial = points[row], points[-1]
-    trial[:DIMENSIONS] = point[:DIMENSIONS]
+    _copy(point[:DIMENSIONS], trial)
     best, share, shortest = np.inf, 0.0, 0.0
     while share >= shortest:
         _evaluate(statement, unit, trial, events[-1], room)
         residual = _residual(trial)
         if residual < (1.0 - 0.1 * share) * best or best == np.inf:
             best, share = residual, 1.0
-            point[:] = trial
+            _copy(trial, point)
             count = int(trial[N_EVENTS])
-            events[row, :count] = events[-1, :count]
+            for i in range(count):
+                _copy(events[-1, i], events[row, i])
             if corrections == 0 or best < ROUNDED or best == np.inf:
                 break
             corrections -= 1
@@ -297,13 +309,14 @@ def trace(statement, unit, corrections, length, longest, limits, points, events,
         point, before = points[row], points[row - 1]
         follows = row > 0 and length > 0.0
         if follows:
-            normal[:] = before[TANGENT : TANGENT + DIMENSIONS]
-            origin[:] = before[:DIMENSIONS] + length * normal
+            for j in range(DIMENSIONS):
+                normal[j] = before[TANGENT + j]
+                origin[j] = before[j] + length * normal[j]
             _predict(points, row - 1, length, nodes, slopes, table)
-            guess[:] = point[:DIMENSIONS]
+            _copy(point[:DIMENSIONS], guess)
         else:
-            normal[:] = point[TANGENT : TANGENT + DIMENSIONS]
-            origin[:] = point[:DIMENSIONS]
+            _copy(point[TANGENT : TANGENT + DIMENSIONS], normal)
+            _copy(point[:DIMENSIONS], origin)
         most = corrections if follows or length == 0.0 else 0
         landed = _land(statement, unit, points, events, row, origin, normal, most, room)
         if not follows:

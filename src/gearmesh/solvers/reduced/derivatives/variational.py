@@ -216,8 +216,10 @@ def propagate(
     height, velocity = series[Y : Y + ORDER + 1, 0], series[V : V + ORDER + 1, 0]
     square, now = series[SQUARE : SQUARE + ORDER, 0], series[: RATE + 1 : ORDER + 1]
     place = now[:, 0]
-    place[:] = state
-    now[:, 1 : DEVIATIONS + 1], now[:, DEVIATIONS + 1 :] = jacobian, 0.0
+    for row in range(SIZE):
+        place[row] = state[row]
+        for lane in range(1, WIDEST):
+            now[row, lane] = jacobian[row, lane - 1] if lane <= DEVIATIONS else 0.0
     store(work, PLACES, lane_numbers(like) * (1.0 / (WIDEST - 1)))
     deviates = lane_numbers(like) > spread(like, 0.0)
     front = np.zeros(SIZE)
@@ -334,6 +336,8 @@ def propagate(
         rates = vector_field(place, np.sign(velocity[0]), c, offset, g, law, bearings)
         for row in range(SIZE):
             now[row, DEVIATIONS] += length * rates[row]
-    state[:] = place
-    jacobian[:, :] = now[:, 1 : DEVIATIONS + 1]
+    for row in range(SIZE):
+        state[row] = place[row]
+        for lane in range(1, DEVIATIONS + 1):
+            jacobian[row, lane - 1] = now[row, lane]
     return COMPLETE, n_events, damping, least_force
