@@ -67,10 +67,11 @@ def _copy(source, target):
 
 
 @inner
-def _solve(matrix):
+def solve(matrix):
     """Reduce a matrix with extra columns so that these hold the solutions; return its determinant.
 
-    The result is 0, and the columns hold no solution, if the matrix is singular.
+    The result is 0, and the columns hold no solution, if the matrix is singular. It is
+    not-a-number if an element is.
     """
     determinant, n = 1.0, len(matrix)
     for i in range(n):
@@ -80,7 +81,7 @@ def _solve(matrix):
                 best = row
         pivot = matrix[best, i]
         if not abs(pivot) > 0.0:
-            return 0.0
+            return pivot
         determinant *= pivot if best == i else -pivot
         for column in range(i, matrix.shape[1]):
             moved = matrix[best, column] / pivot
@@ -186,7 +187,7 @@ def _land(statement, unit, points, events, row, origin, normal, corrections, roo
             for j in range(DIMENSIONS):
                 ahead += normal[j] * (point[j] - origin[j])
             _border(point, normal, ahead, matrix)
-            if _solve(matrix) == 0.0:
+            if not abs(solve(matrix)) > 0.0:
                 break
         else:
             share *= 0.5
@@ -195,13 +196,13 @@ def _land(statement, unit, points, events, row, origin, normal, corrections, roo
         if not trial[SIZE] > 0.0:
             break
     _border(point, normal, 0.0, matrix)
-    determinant = _solve(matrix)
+    determinant = solve(matrix)
     size = 0.0
     for j in range(DIMENSIONS):
         size += matrix[j, DIMENSIONS + 1] ** 2
     size = np.sqrt(size)
     for j in range(DIMENSIONS):
-        point[TANGENT + j] = matrix[j, DIMENSIONS + 1] / size if determinant != 0.0 else 0.0
+        point[TANGENT + j] = matrix[j, DIMENSIONS + 1] / size if abs(determinant) > 0.0 else 0.0
     # The bordering row counts only by its part along the tangent, 1/size.
     point[DETERMINANT] = determinant * size
     return best < LARGEST_RESIDUAL

@@ -5,31 +5,8 @@ from collections.abc import Callable
 import numpy as np
 from numba import njit
 
-from gearmesh.solvers.compilation import inner, persistent
-
-
-@inner
-def _determinant(matrix):
-    """Return the determinant of a matrix, which is overwritten."""
-    determinant, n = 1.0, len(matrix)
-    for i in range(n):
-        best = i
-        for row in range(i + 1, n):
-            if abs(matrix[row, i]) > abs(matrix[best, i]):
-                best = row
-        pivot = matrix[best, i]
-        if not abs(pivot) > 0.0:
-            return pivot
-        determinant *= pivot if best == i else -pivot
-        for column in range(i, n):
-            moved = matrix[best, column]
-            matrix[best, column] = matrix[i, column]
-            matrix[i, column] = moved
-        for row in range(i + 1, n):
-            factor = matrix[row, i] / pivot
-            for column in range(i + 1, n):
-                matrix[row, column] -= factor * matrix[i, column]
-    return determinant
+from gearmesh.solvers.compilation import persistent
+from gearmesh.solvers.reduced.derivatives.curves import solve
 
 
 def _build_products(key: str, cache: bool) -> Callable[..., None]:
@@ -43,14 +20,14 @@ def _build_products(key: str, cache: bool) -> Callable[..., None]:
                 for k in range(n):
                     room[i, k] = matrix[i, k]
                 room[i, i] += 1.0
-            found[0, number] = _determinant(room[:n, :n])
+            found[0, number] = solve(room[:n, :n])
             for row in range(len(pairs)):
                 i, k = pairs[row]
                 for column in range(len(pairs)):
                     p, q = pairs[column]
                     room[row, column] = matrix[i, p] * matrix[k, q] - matrix[i, q] * matrix[k, p]
                 room[row, row] -= 1.0
-            found[1, number] = _determinant(room[: len(pairs), : len(pairs)])
+            found[1, number] = solve(room[: len(pairs), : len(pairs)])
 
     return compiled
 
