@@ -196,14 +196,20 @@ def test_a_start_outside_the_range_is_said():
     ],
 )
 def test_an_isola_is_the_same_from_each_of_its_mesh_periods(name, nu, state, periods, kinds):
-    """Two orbits come as close as 5e-4 to each other in the one; grazings come in pairs in both."""
+    """The isola of d-lubricant has another orbit 5e-4 away; that of c-lubricant grazes in pairs."""
     orbit = correct(gm.paper().problem(variant(name), nu), np.array(state), periods)
-    found = []
+    found, heights = [], []
     for start in orbit.points:
         branch = follow(correct(orbit.problem, start, periods), "nu", (0.6, 1.2))
         assert branch.ends == (CLOSED, CLOSED)
         found.append(sorted((point.kind, point.nu) for point in branch.special))
+        low, high = sorted(place for kind, place in found[-1] if kind == "fold")
+        there = branch.resampled(high - (high - low) * np.logspace(-5, -0.1, 20))
+        heights.append(sorted(zip(there.values, there.y_max, strict=True)))
     assert Counter(kind for kind, _ in found[0]) == kinds
     for other in found[1:]:
         assert [kind for kind, _ in other] == [kind for kind, _ in found[0]]
         assert [nu for _, nu in other] == pytest.approx([nu for _, nu in found[0]], abs=1e-10)
+    for other in heights:
+        assert len(other) == 40
+        np.testing.assert_allclose(other, heights[0], atol=1e-8, rtol=0)

@@ -37,8 +37,8 @@ def test_chaos_grows_as_fast_as_two_runs_part():
     case = problem(1.0, "a-conservative", **HEAVY)
     start = np.array([3.5, 2.0, -2.0, 0.0])
     spectrum = lyapunov_spectrum(case, start, 1000, transient=100)
-    # Three standard errors, as below for regular motion. Rounding decides more: starts 1e-7 apart
-    # give ratios from 4 to 23, because this motion is regular for some hundred periods at a time.
+    # This motion is regular for hundreds of periods at a time. Starts that differ by 1e-7 therefore
+    # give exponents of 4 to 23 standard errors. Three are asked, as below for regular motion.
     assert spectrum.exponents[0] > 3.0 * spectrum.errors[0] > 0.0
     # Without mesh damping the mesh alone keeps areas: its two exponents cancel.
     assert spectrum.exponents[[0, -1]].sum() == pytest.approx(0.0, abs=1e-4)

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from orbits_in_tables import distance
 
+import gearmesh as gm
 from gearmesh.dynamics.attraction.classification import classify
 from gearmesh.dynamics.attraction.kinds import PERIODIC
 from gearmesh.dynamics.periodic.orbits import correct
@@ -43,6 +44,12 @@ def test_isolas_of_longer_periods_are_found_and_closed_between_their_folds(found
             assert np.abs(fold.orbit.multipliers - 1.0).min() < 1e-5
         places = [(point.kind, round(point.nu, 9)) for point in isola.special]
         assert len(set(places)) == len(places)  # the place where the branch closes counts once
+
+
+def test_an_orbit_that_cannot_be_followed_does_not_cost_the_others(pair):
+    outside, inside = (gm.find_orbit(pair, NAME, nu) for nu in (0.9, 0.75))
+    (branch,) = further([], [outside, inside], LIMITS)
+    assert branch.orbit is inside
 
 
 def test_what_remains_of_a_long_run_lies_on_a_branch(pair, found):

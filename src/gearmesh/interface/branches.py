@@ -294,7 +294,7 @@ def _at_value(orbit: Orbit, name: str, value: float, found: Shot) -> Orbit:
 def _family(orbit: Orbit, names: tuple[str, ...]) -> tuple[Family | None, tuple[float, ...]]:
     """Return the problems over some parameters, and the values of these at an orbit.
 
-    Of nu alone the problems are not stated: no parameter of the pair need be read again.
+    If nu alone varies, there is no such function, because no parameter of the pair changes.
     """
     for name in names:
         declared(orbit.pair, name)

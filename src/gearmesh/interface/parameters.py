@@ -116,11 +116,11 @@ def read_values(pair: Pair, name: str, values: object) -> np.ndarray:
     return np.array([_read_value(pair, name, bare(value)) for value in several(values)])
 
 
-def _read_value(pair: Pair, name: str, end: object, what: str = "") -> float:
+def _read_value(pair: Pair, name: str, given: object, what: str = "") -> float:
     stated = _declaration(name)
     unit, least, greatest = (stated[key] for key in ("unit", "low", "high"))
     written = "" if unit == "1" else f" {unit}"
-    value: Any = as_nu(end, pair) if name == "nu" else end
+    value: Any = as_nu(given, pair) if name == "nu" else given
     sizes = (pair.static_deflection, pair.reduced_mass, pair.stiffness_mean)
     for (scale, of_scale), size in zip(units.SCALES.items(), sizes, strict=True):
         value = units.scaled(value, scale, size, of_scale)
@@ -129,9 +129,9 @@ def _read_value(pair: Pair, name: str, end: object, what: str = "") -> float:
         number = units.parse(value, unit if isinstance(value, str) else "1")
         number = number if isinstance(value, str) else float(value)
     except ValueError as error:
-        raise InputError(f"{what}{name}: found {shown(end)}; {error}") from None
+        raise InputError(f"{what}{name}: found {shown(given)}; {error}") from None
     if not least <= number <= greatest:
         raise InputError(
-            f"{what}{name}: found {shown(end)}; allowed is {least:g} to {greatest:g}{written}"
+            f"{what}{name}: found {shown(given)}; allowed is {least:g} to {greatest:g}{written}"
         )
     return number

@@ -14,6 +14,7 @@ from gearmesh.dynamics.continuation.zeros import length_between, zeros
 from gearmesh.errors import NoOrbit
 
 _SIDE = 3  # points on each side of an orbit from which it is predicted
+_ASTRAY = 0.01  # share of an interval by which a predicted orbit may be wrong
 _STEADY = 0.02  # least slope of the parameter at points from which orbits are predicted
 
 
@@ -53,23 +54,47 @@ def resampled(pieces: list[Piece], values: np.ndarray, closed: bool) -> list[Pie
 
 def _passages(piece: Piece, values: np.ndarray) -> Sequence[Point]:
     """Return the points of a piece at the values, without its last point."""
-    curve, points, here = piece.curve, piece.points, first_values(piece.points).tolist()
+    curve, points = piece.curve, piece.points
     places, tangents = geometry(points)
-    up = np.eye(places.shape[1])[-1]
     steep = np.abs(tangents[:, -1]) > _STEADY
     steady = steep[1:] & steep[:-1] & (tangents[1:, -1] * tangents[:-1, -1] > 0.0)
-    passed = [_from_to(values, *ends) for ends in pairwise(here)]
+    passed = [_from_to(values, *ends) for ends in pairwise(first_values(points).tolist())]
     counts = np.where(steady, [len(one) for one in passed], 0)
     intervals = np.repeat(np.arange(len(counts)), counts)
     wanted = np.concatenate([values[:0], *(passed[i] for i in np.flatnonzero(counts))])
-    predicted = _predicted(places, tangents, steady, intervals, wanted / curve.units[0])
-    landed = curve.landed(predicted, up, np.sign(tangents[intervals, -1:]) * up)
+    landed, strayed = _landed(curve, places, tangents, steady, intervals, wanted)
+    steady[strayed] = False
     found, first, ends = landed[:0], 0, np.cumsum(counts).tolist()
     for i in np.flatnonzero(~steady).tolist():
-        found = chained(found, landed[first : ends[i]])
+        found = chained(found, landed[first : ends[i] - counts[i]])
         found = chained(found, _searched(curve, points[i], points[i + 1], values))
         first = ends[i]
     return chained(found, landed[first:])
+
+
+def _landed(
+    curve: Curve,
+    places: np.ndarray,
+    tangents: np.ndarray,
+    steady: np.ndarray,
+    intervals: np.ndarray,
+    wanted: np.ndarray,
+) -> tuple[Sequence[Point], np.ndarray]:
+    """Return the points at values of the parameter, and the intervals where they are doubtful.
+
+    An orbit that is far from where it is predicted may belong to another branch.
+    """
+    up = np.eye(places.shape[1])[-1]
+    predicted = _predicted(places, tangents, steady, intervals, wanted / curve.units[0])
+    try:
+        landed = curve.landed(predicted, up, np.sign(tangents[intervals, -1:]) * up)
+    except NoOrbit:
+        return [], np.unique(intervals)
+    if not landed:
+        return landed, intervals
+    moved = np.linalg.norm(geometry(landed)[0] - predicted, axis=1)
+    lengths = np.linalg.norm(np.diff(places, axis=0), axis=1)
+    return landed, np.unique(intervals[moved > _ASTRAY * lengths[intervals]])
 
 
 def _from_to(values: np.ndarray, start: float, end: float) -> np.ndarray:
@@ -86,7 +111,7 @@ def _predicted(
     intervals: np.ndarray,
     wanted: np.ndarray,
 ) -> np.ndarray:
-    """Return the places of a curve at values of its parameter, by Hermite's interpolation.
+    """Return places at values of the parameter, on polynomials through known points and tangents.
 
     Parameters
     ----------
@@ -109,7 +134,7 @@ def _predicted(
     for k in range(1, _SIDE):
         surrounded[k:] &= steady[:-k]
         surrounded[:-k] &= steady[k:]
-        surrounded[[*range(k), *range(-k, 0)]] = False
+        surrounded[:k] = surrounded[-k:] = False
     many = surrounded[intervals]
     for side, which in ((1, ~many), (_SIDE, many)):
         nodes = intervals[which, None] + np.arange(1 - side, side + 1)

@@ -89,7 +89,8 @@ class _Events(NamedTuple):
         The velocities where C(t) jumps. Such a velocity counts only if y'' changes sign at the
         jump, at this point or a neighbouring one; otherwise it is not-a-number.
     beyond : ndarray, shape (2, n)
-        Numbers that change with the regimes that an orbit passes, front and back.
+        For the front end of the backlash and for the back end, a count that a grazing changes: of
+        the passages of that end, or of the extrema beyond it.
     """
 
     heights: np.ndarray

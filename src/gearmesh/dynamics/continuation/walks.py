@@ -243,7 +243,10 @@ def _between(curve: Curve, point: Point, following: Point, value: float, i: int 
 
 
 def _back(curve: Curve, point: Point, following: Point, start: Point) -> Point | None:
-    """Return the first point of a closed branch, if the branch passes it between two points."""
+    """Return the point at which a branch closes, if it does so between `point` and `following`.
+
+    This is where it meets the orbit of `start` again.
+    """
     level = following.values[0] == point.values[0]
     if level or not following.slope * start.slope > 0.0:
         return None

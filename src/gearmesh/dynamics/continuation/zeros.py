@@ -1,8 +1,8 @@
 """Zeros of test functions between neighbouring points of a branch.
 
-If a test function changes sign between two points, a root is located on the branch itself. If its
-tangents at both ends allow two roots in between, the piece of the branch is halved until they do
-not.
+Where a test function changes sign between two points, its root is located on the branch itself.
+Where it has the same sign at both points, its tangents there show whether it may pass 0 twice in
+between. If so, the piece of the branch is halved, and each half is searched.
 """
 
 from collections.abc import Callable, Iterator, Sequence

@@ -35,6 +35,12 @@ def jumps_of(events: np.ndarray, jumping: np.ndarray) -> np.ndarray:
 
 
 def jumping_segments(segments: np.ndarray) -> np.ndarray:
-    """Return whether C(t) jumps at the start of each of the segments of `segments_of`."""
+    """Return, for each segment of a mesh period, whether C(t) jumps where it begins.
+
+    Parameters
+    ----------
+    segments : ndarray, shape (m, 3)
+        As of `gearmesh.solvers.reduced.derivatives.period_map.segments_of`.
+    """
     stiffness = segments[:, 1]
     return stiffness != np.roll(stiffness, 1)

@@ -128,7 +128,10 @@ def further(known: Iterable[Branch], ends: Iterable[Orbit], limits: Range) -> It
         orbit = waiting.pop(0)
         if any(holds(branch, orbit) for branch in found):
             continue
-        branch = follow(orbit, "nu", limits)
+        try:
+            branch = follow(orbit, "nu", limits)
+        except NoOrbit:  # one branch that cannot be followed must not cost the others
+            continue
         found.append(branch)
         waiting[:0] = [
             point.orbit for point in branch.special if point.orbit.periods < orbit.periods

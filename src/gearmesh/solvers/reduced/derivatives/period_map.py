@@ -147,7 +147,8 @@ def trace(
     stated : tuple
         Of `statement`.
     place, normal : ndarray, shape (5,) or (n, 5)
-        The first point, or all points, and the normals of the planes in which they are corrected.
+        The places of the points, and the normals of the planes in which they are corrected. A curve
+        has one, its first point.
     unit, corrections, length, longest, limits
         As for the compiled function.
     steps : int
