@@ -29,6 +29,9 @@ Family = Callable[..., Problem]
 
 _CONTRACTION = 0.01  # of the defect: gradients that reduce it so far are used again
 _DIFFERENCE = 1e-5
+ASTRAY = 0.02
+"""Largest distance between a point and where a polynomial through its neighbours predicts it, as a
+share of the distance of the nearest two. A point farther away may belong to another branch."""
 
 
 def unit_of(low: float, high: float) -> float:
@@ -175,13 +178,21 @@ class Curve:
         `share` says how far it is from `left` to `right`, from 0 to 1. Distances are measured along
         `normal`, which must be close to both tangents. A cubic polynomial through both points, with
         their tangents, predicts the new point.
+
+        Raises
+        ------
+        NoOrbit
+            If there is none near the predicted place.
         """
         apart, rest = right.place - left.place, 1.0 - share
         length = float(normal @ apart) * share * rest
         ahead, behind = length / (left.tangent @ normal), length / (right.tangent @ normal)
         bend = rest * ahead * left.tangent - share * behind * right.tangent
         place = left.place + share * share * (3.0 - 2.0 * share) * apart + bend
-        return self.point(place, normal, left.tangent)
+        found = self.point(place, normal, left.tangent)
+        if np.linalg.norm(found.place - place) > ASTRAY * np.linalg.norm(apart):
+            raise NoOrbit("the corrector leads away from the branch")
+        return found
 
     def step(self, point: Point, length: float) -> Point:
         """Return the point one step ahead along the tangent."""

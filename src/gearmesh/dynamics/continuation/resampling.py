@@ -6,7 +6,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from gearmesh.dynamics.continuation.curves import Curve
+from gearmesh.dynamics.continuation.curves import ASTRAY, Curve
 from gearmesh.dynamics.continuation.points import Point
 from gearmesh.dynamics.continuation.tracing import chained, first_values, geometry
 from gearmesh.dynamics.continuation.walks import Piece
@@ -14,7 +14,6 @@ from gearmesh.dynamics.continuation.zeros import length_between, zeros
 from gearmesh.errors import NoOrbit
 
 _SIDE = 3  # points on each side of an orbit from which it is predicted
-_ASTRAY = 0.01  # share of an interval by which a predicted orbit may be wrong
 _STEADY = 0.02  # least slope of the parameter at points from which orbits are predicted
 
 
@@ -94,7 +93,7 @@ def _landed(
         return landed, intervals
     moved = np.linalg.norm(geometry(landed)[0] - predicted, axis=1)
     lengths = np.linalg.norm(np.diff(places, axis=0), axis=1)
-    return landed, np.unique(intervals[moved > _ASTRAY * lengths[intervals]])
+    return landed, np.unique(intervals[moved > ASTRAY * lengths[intervals]])
 
 
 def _from_to(values: np.ndarray, start: float, end: float) -> np.ndarray:
