@@ -152,7 +152,9 @@ class Branch:
             },
             static_deflection(pair, (self.parameter,), found.values[:, None]),
         )
-        nu = np.array([point.orbit.problem.nu for point in found.points])
+        nu = found.values
+        if self.parameter != "nu":
+            nu = np.array([point.orbit.problem.nu for point in found.points])
         for name, values, what in (
             ("nu", nu, "mesh frequency nu_s"),
             ("stable", found.stable, "whether the orbit is stable"),

@@ -9,9 +9,11 @@ import numpy as np
 
 from gearmesh.dynamics.continuation.curves import Curve, Family, unit_of
 from gearmesh.dynamics.continuation.points import Point
+from gearmesh.dynamics.continuation.readings import extremes, judgements, multipliers
 from gearmesh.dynamics.continuation.resampling import resampled
 from gearmesh.dynamics.continuation.special_points import SpecialPoint, special_points
 from gearmesh.dynamics.continuation.suspects import suspects
+from gearmesh.dynamics.continuation.tracing import first_values
 from gearmesh.dynamics.continuation.walks import (
     CLOSED,
     LONGEST_STEP,
@@ -91,37 +93,43 @@ class Branch:
     @cached_property
     def values(self) -> np.ndarray:
         """The parameter along the branch, shape (n,)."""
-        return np.array([point.values[0] for point in self.points])
+        return self._along(first_values)
 
     @cached_property
     def orbits(self) -> Sequence[Shot]:
         """The orbits at these values; each is computed when it is first asked for."""
         return _Orbits(self.points, self.phase)
 
-    @cached_property
+    @property
     def y_max(self) -> np.ndarray:
         """Greatest y of each orbit."""
-        return np.array([point.motion.y_max for point in self.points])
+        return self._along(extremes)[:, 0]
 
-    @cached_property
+    @property
     def y_min(self) -> np.ndarray:
         """Least y of each orbit."""
-        return np.array([point.motion.y_min for point in self.points])
+        return self._along(extremes)[:, 1]
 
     @property
     def stable(self) -> np.ndarray:
         """Whether each orbit is stable."""
-        return np.array([point.orbit.stable for point in self.points])
+        return self._along(judgements)[:, 0]
 
     @property
     def neutral(self) -> np.ndarray:
         """Whether each orbit is neutral."""
-        return np.array([point.orbit.neutral for point in self.points])
+        return self._along(judgements)[:, 1]
 
     @property
     def multipliers(self) -> np.ndarray:
         """Floquet multipliers, shape (n, number of multipliers)."""
-        return np.array([point.orbit.multipliers for point in self.points])
+        return self._along(multipliers)
+
+    def _along(self, read: Callable[[Sequence[Point]], np.ndarray]) -> np.ndarray:
+        """Return what `read` finds in the points of each piece, for all points."""
+        first, *others = self.chosen or self.pieces
+        parts = [first.points, *(one.points[1:] for one in others)]
+        return np.concatenate([read(part) for part in parts if part])
 
 
 class _Orbits(Sequence[Shot]):

@@ -134,10 +134,22 @@ class Curve:
         return self._with_tangent(found, found_orbit, along)
 
     def landed(self, places: np.ndarray, normal: np.ndarray, alongs: np.ndarray) -> Sequence[Point]:
-        """Return the points as of `point` near several places, shape (n, k + m)."""
-        if self.tracer is not None and len(places):
-            return self.tracer.landed(places, normal, alongs, MOST_CORRECTIONS)
-        return [self.point(*one) for one in zip(places, repeat(normal), alongs, strict=False)]
+        """Return the points as of `point` near several places, shape (n, k + m).
+
+        A place that leads to no orbit has a point of not-a-numbers.
+        """
+        if self.tracer is not None:
+            return self.tracer.landed(places, normal, alongs)
+        return [
+            self._point_or_none(*one) for one in zip(places, repeat(normal), alongs, strict=False)
+        ]
+
+    def _point_or_none(self, place: np.ndarray, normal: np.ndarray, along: np.ndarray) -> Point:
+        try:
+            return self.point(place, normal, along)
+        except NoOrbit:
+            none, values = place * np.nan, (float("nan"),) * len(self.units)
+            return Point(none, values, none, float("nan"), self.like, lambda: self.like)
 
     def beside(self, point: Point, length: float) -> Point:
         """Return the point at a small distance along the tangent, where the curve still is."""

@@ -85,15 +85,12 @@ def _landed(
     """
     up = np.eye(places.shape[1])[-1]
     predicted = _predicted(places, tangents, steady, intervals, wanted / curve.units[0])
-    try:
-        landed = curve.landed(predicted, up, np.sign(tangents[intervals, -1:]) * up)
-    except NoOrbit:
-        return [], np.unique(intervals)
+    landed = curve.landed(predicted, up, np.sign(tangents[intervals, -1:]) * up)
     if not landed:
         return landed, intervals
     moved = np.linalg.norm(geometry(landed)[0] - predicted, axis=1)
     lengths = np.linalg.norm(np.diff(places, axis=0), axis=1)
-    return landed, np.unique(intervals[moved > ASTRAY * lengths[intervals]])
+    return landed, np.unique(intervals[~(moved <= ASTRAY * lengths[intervals])])
 
 
 def _from_to(values: np.ndarray, start: float, end: float) -> np.ndarray:
@@ -136,19 +133,25 @@ def _predicted(
         surrounded[:k] = surrounded[-k:] = False
     many = surrounded[intervals]
     for side, which in ((1, ~many), (_SIDE, many)):
-        nodes = intervals[which, None] + np.arange(1 - side, side + 1)
-        found[which] = _interpolated(places[nodes], rates[nodes], wanted[which])
+        used, each = np.unique(intervals[which], return_inverse=True)
+        nodes = used[:, None] + np.arange(1 - side, side + 1)
+        found[which] = _interpolated(places[nodes], rates[nodes], each, wanted[which])
     return found
 
 
-def _interpolated(places: np.ndarray, rates: np.ndarray, at: np.ndarray) -> np.ndarray:
-    """Return polynomials through places, with their rates, at values of the last coordinate.
+def _interpolated(
+    places: np.ndarray, rates: np.ndarray, each: np.ndarray, at: np.ndarray
+) -> np.ndarray:
+    """Return values of polynomials through places, with their rates.
 
     Parameters
     ----------
-    places, rates : ndarray, shape (m, n, k)
+    places, rates : ndarray, shape (p, n, k)
         n places for each polynomial, and their derivatives with respect to the last coordinate.
+    each : ndarray of int, shape (m,)
+        The polynomial of each value.
     at : ndarray, shape (m,)
+        The last coordinate there.
 
     Returns
     -------
@@ -161,9 +164,10 @@ def _interpolated(places: np.ndarray, rates: np.ndarray, at: np.ndarray) -> np.n
     for order in range(2, nodes.shape[1]):
         apart = nodes[:, order:] - nodes[:, :-order]
         factors[:, order:] = np.diff(factors[:, order - 1 :], axis=1) / apart[..., None]
-    found = factors[:, -1]
+    away = at[:, None] - nodes[each]
+    found = factors[each, -1]
     for i in range(nodes.shape[1] - 2, -1, -1):
-        found = found * (at - nodes[:, i])[:, None] + factors[:, i]
+        found = found * away[:, i : i + 1] + factors[each, i]
     found[:, -1] = at
     return found
 

@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from functools import cached_property, partial
+from functools import cached_property
 from typing import overload
 
 import numpy as np
@@ -15,6 +15,7 @@ from gearmesh.model.problem import Problem
 from gearmesh.solvers.reduced.derivatives import curves
 from gearmesh.solvers.reduced.derivatives.curves import LARGEST_RESIDUAL
 from gearmesh.solvers.reduced.derivatives.deviations import DEVIATIONS, SIZE
+from gearmesh.solvers.reduced.derivatives.landings import land
 from gearmesh.solvers.reduced.derivatives.period_map import (
     STATUSES,
     Statement,
@@ -26,6 +27,7 @@ from gearmesh.solvers.reduced.derivatives.variational import COMPLETE
 
 MOST_CORRECTIONS = 12
 _MOST_STEPS = 64  # in one call of the compiled code
+_UNRECORDED = np.empty(0)  # stands for the events of a motion in a lane
 
 
 @dataclass(frozen=True)
@@ -68,22 +70,20 @@ class Tracer:
     def _landed(
         self, place: np.ndarray, normal: np.ndarray, along: np.ndarray, corrections: int
     ) -> Point:
-        return self.landed(place[None], normal, along, corrections)[0]
-
-    def landed(
-        self, places: np.ndarray, normal: np.ndarray, along: np.ndarray, corrections: int
-    ) -> "Track":
-        """Return the points near several places, each in its plane, as of `Curve.point`."""
-        rows, events, _ = trace(self.stated, places, normal, self.unit, corrections)
-        outcomes = rows[:, curves.OUTCOME]
-        if (outcomes != COMPLETE).any():
-            raise NoOrbit(f"the motion ends with {STATUSES[int(outcomes.max())]}")
-        residual = np.abs(rows[:, curves.END : curves.JACOBIAN] - rows[:, :SIZE]).max()
+        rows, events, _ = trace(self.stated, place, normal, self.unit, corrections)
+        if rows[0, curves.OUTCOME] != COMPLETE:
+            raise NoOrbit(f"the motion ends with {STATUSES[int(rows[0, curves.OUTCOME])]}")
+        residual = float(_residuals(rows)[0])
         if corrections and not residual < LARGEST_RESIDUAL:
             raise NoOrbit(f"the corrector stops at a residual of {residual:.1e}")
-        back = (rows[:, curves.TANGENT : curves.DETERMINANT] * along).sum(axis=1) < 0.0
-        rows[back, curves.TANGENT : curves.OUTCOME] *= -1.0
-        return Track(self, rows, _recorded(rows, events))
+        return Track(self, _directed(rows, along), _recorded(rows, events))[0]
+
+    def landed(self, places: np.ndarray, normal: np.ndarray, alongs: np.ndarray) -> "Track":
+        """Return the points as of `Curve.landed`."""
+        rows = land(self.problem, self.periods, self.unit, places, normal, MOST_CORRECTIONS)
+        met = (rows[:, curves.OUTCOME] == COMPLETE) & (_residuals(rows) < LARGEST_RESIDUAL)
+        rows[~met] = np.nan
+        return Track(self, _directed(rows, alongs), [_UNRECORDED] * len(rows))
 
     def ahead(
         self, point: Point, length: float, longest: float, limits: tuple[float, float]
@@ -111,7 +111,7 @@ class Tracer:
         row = motion.row.copy()
         row[curves.TANGENT : curves.DETERMINANT] = point.tangent
         row[curves.DETERMINANT] = point.determinant
-        return Track(self, row[None], [motion.events])
+        return Track(self, row[None], [motion.recorded])
 
     def read(self, row: np.ndarray, events: np.ndarray) -> Point:
         """Return the point that stands in a row of the compiled code."""
@@ -122,17 +122,32 @@ class Tracer:
             row[curves.TANGENT : curves.DETERMINANT],
             float(row[curves.DETERMINANT]),
             motion,
-            partial(_orbit, motion),
+            lambda: motion.orbit,
         )
 
 
 @dataclass(eq=False)
 class _Traced:
-    """A motion that compiled code found, with the names of `Motion`."""
+    """A motion that compiled code found, with the names of `Motion`.
+
+    Events that were not recorded are found when they are asked for.
+    """
 
     tracer: Tracer
     row: np.ndarray
-    events: np.ndarray
+    recorded: np.ndarray
+
+    @cached_property
+    def events(self) -> np.ndarray:
+        return self.orbit.passage.events if self.recorded is _UNRECORDED else self.recorded
+
+    @cached_property
+    def orbit(self) -> Orbit:
+        tracer, row, known = self.tracer, self.row, None
+        if self.recorded is not _UNRECORDED:
+            known = passage_of(tracer.stated, tracer.unit, row, self.recorded)
+        problem = replace(tracer.problem, nu=self.nu)
+        return Orbit(problem, tracer.periods, row[:SIZE], known)
 
     @property
     def nu(self) -> float:
@@ -183,16 +198,25 @@ class _Traced:
         return float(self.row[curves.Y_MIN])
 
 
+def _residuals(rows: np.ndarray) -> np.ndarray:
+    """Return |P^n(x) - x| of each row."""
+    residuals: np.ndarray = np.abs(rows[:, curves.END : curves.JACOBIAN] - rows[:, :SIZE]).max(
+        axis=1
+    )
+    return residuals
+
+
+def _directed(rows: np.ndarray, along: np.ndarray) -> np.ndarray:
+    """Turn the tangents of rows so that they follow `along`, and return the rows."""
+    back = (rows[:, curves.TANGENT : curves.DETERMINANT] * along).sum(axis=1) < 0.0
+    rows[back, curves.TANGENT : curves.OUTCOME] *= -1.0
+    return rows
+
+
 def _recorded(rows: np.ndarray, events: np.ndarray) -> list[np.ndarray]:
     """Return the events of each row, out of the room for them."""
     counts = rows[:, curves.N_EVENTS].astype(int).tolist()
     return [one[:count] for one, count in zip(events, counts, strict=False)]
-
-
-def _orbit(motion: _Traced) -> Orbit:
-    tracer, row = motion.tracer, motion.row
-    moved = passage_of(tracer.stated, tracer.unit, row, motion.events)
-    return Orbit(replace(tracer.problem, nu=motion.nu), tracer.periods, row[:SIZE], moved)
 
 
 class Track(Sequence[Point]):
@@ -204,7 +228,7 @@ class Track(Sequence[Point]):
     rows : ndarray, shape (n, POINT_SIZE)
         The columns of `gearmesh.solvers.reduced.derivatives.curves`.
     events : list of ndarray
-        Events of each motion.
+        Events of each motion, as far as they have been recorded.
     """
 
     def __init__(self, tracer: Tracer, rows: np.ndarray, events: list[np.ndarray]) -> None:

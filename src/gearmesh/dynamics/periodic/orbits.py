@@ -202,15 +202,12 @@ class Orbit:
 
         Its multipliers are then on the unit circle, except for the effect of the bearings.
         """
-        return self.undamped and not self._grows(_LEAST_GROWTH)
+        return bool(judged(self.multipliers, self.undamped)[1])
 
     @property
     def stable(self) -> bool:
         """Whether all multipliers are inside the unit circle and the orbit is not neutral."""
-        return not self.neutral and not self._grows(0.0)
-
-    def _grows(self, margin: float) -> bool:
-        return bool(np.abs(self.multipliers[0]) >= 1.0 + margin)
+        return bool(judged(self.multipliers, self.undamped)[0])
 
     @cached_property
     def signature(self) -> tuple[int, ...]:
@@ -375,7 +372,25 @@ def newton_correction(moved: Passage, state: np.ndarray) -> np.ndarray:
     return np.linalg.lstsq(matrix, state - moved.end, rcond=1e-14)[0]
 
 
+def judged(multipliers: np.ndarray, undamped: bool | np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return whether orbits are stable, and whether they are neutral, as of `Orbit`.
+
+    Parameters
+    ----------
+    multipliers : ndarray, shape (..., 4)
+        The largest modulus first.
+    undamped : bool or ndarray, shape (...)
+    """
+    size = np.abs(multipliers[..., 0])
+    neutral = undamped & ~(size >= 1.0 + _LEAST_GROWTH)
+    return ~neutral & ~(size >= 1.0), neutral
+
+
 def sorted_multipliers(multipliers: np.ndarray) -> np.ndarray:
-    """Return multipliers as complex numbers, the largest modulus first, conjugates together."""
+    """Return multipliers as complex numbers, the largest modulus first, conjugates together.
+
+    The last axis holds those of an orbit.
+    """
     values = multipliers.astype(complex)
-    return values[np.lexsort([-values.imag, -values.real, -np.abs(values)])]
+    order = np.lexsort([-values.imag, -values.real, -np.abs(values)], axis=-1)
+    return np.take_along_axis(values, order, axis=-1)

@@ -95,6 +95,11 @@ class _Rows:
     def __setitem__(self, row, traced):
         self.builder.store(traced.value, self._pointer(row, traced.value.type), align=8)
 
+    def several(self, row, count):
+        """Return `count` rows from `row` on, side by side in one longer vector."""
+        pointer = self._pointer(row, vector_type(DOUBLE, count * self.width))
+        return _Traced(self.builder, self.builder.load(pointer, align=8))
+
     def first(self, row):
         """Return the first lane of a row in every lane."""
         value = self.builder.load(self._pointer(row, DOUBLE), align=8)

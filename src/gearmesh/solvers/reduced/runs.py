@@ -203,17 +203,16 @@ def sweep_all(width: int, *arguments: object) -> None:
     compiled = _scalar_sweep if width == 1 else _vector_sweep
     progress[WIDEST:] = 0
     progress[ENDED] = (1 << width) - 1
-    work = _workspace()
+    work = workspace(N_ROWS)
     while not compiled(work, *arguments, progress, _MOST_TURNS):
         pass
 
 
-def _workspace() -> np.ndarray:
-    """Return the workspace of the sweep; a row that straddles two cache lines costs two loads."""
-    row = 8 * WIDEST
-    raw = np.zeros((N_ROWS + 1) * WIDEST)
-    first = -raw.ctypes.data % row // 8
-    return raw[first : first + N_ROWS * WIDEST]
+def workspace(rows: int) -> np.ndarray:
+    """Return room for rows of lanes; a row that straddles two cache lines costs two loads."""
+    raw = np.zeros((rows + 1) * WIDEST)
+    first = -raw.ctypes.data % (8 * WIDEST) // 8
+    return raw[first : first + rows * WIDEST]
 
 
 def _final_state(problem: Problem, summary: Mapping[str, Any]) -> State:

@@ -61,7 +61,7 @@ whose runs are over, as bits.
 
 
 @inner
-def _highest_power(like, work):
+def highest_power(like, work):
     """Return the highest power of v in the damping that acts in some lane."""
     zero = spread(like, 0.0)
     if any_lane(~(load(like, work, CUBIC) == zero)):
@@ -70,7 +70,7 @@ def _highest_power(like, work):
 
 
 @inner
-def _take_step(like, work):
+def take_step(like, work):
     """Move every lane to the end of its step."""
     zero = spread(like, 0.0)
     duration = load(like, work, TAKEN)
@@ -101,7 +101,7 @@ def _take_step(like, work):
 
 
 @inner
-def _settle(like, work, indices, summaries, strobes):
+def settle(like, work, indices, summaries, strobes):
     """Follow what ended the steps; return the lanes whose runs are over, as bits."""
     width = width_of(like)
     event = load(like, work, EVENT)
@@ -127,7 +127,7 @@ def _settle(like, work, indices, summaries, strobes):
 
 
 @inner
-def _all_empty(indices):
+def all_empty(indices):
     """Return whether no lane has a run; numba would compile `indices.max()` for a second."""
     empty = True
     for index in indices:
@@ -183,10 +183,10 @@ def sweep(
                 idle(work, width, lane)
             if not ended:
                 enter(like, work)
-                if _all_empty(indices):
+                if all_empty(indices):
                     return True
         turn(like, work, runs, indices, summaries, extrema)
-        expand(like, work, _highest_power(like, work))
+        expand(like, work, highest_power(like, work))
         choose_step(like, work)
         find_event(like, work)
         if any_lane(load(like, work, KEPT) > spread(like, 0.0)):
@@ -195,8 +195,8 @@ def sweep(
                 index = indices[lane]
                 if 0 <= index < samples.shape[0]:
                     sample(work, width, lane, runs[index], samples[index], samples_per_period)
-        _take_step(like, work)
-        ended = _settle(like, work, indices, summaries, strobes)
+        take_step(like, work)
+        ended = settle(like, work, indices, summaries, strobes)
         turns += 1
     progress[ENDED] = ended
     return False

@@ -57,7 +57,7 @@ _HISTORY = 3  # points from which the next is predicted
 
 
 @inner
-def _copy(source, target):
+def copy(source, target):
     """Write numbers to the beginning of an array.
 
     numba takes seconds to compile assignments between arrays, for the message of a failure.
@@ -96,7 +96,7 @@ def solve(matrix):
 
 
 @inner
-def _border(point, normal, ahead, matrix):
+def border(point, normal, ahead, matrix):
     """Write the gradients of P^n(x) - x, bordered by `normal`, and two right-hand sides."""
     for i in range(SIZE):
         for j in range(SIZE):
@@ -112,7 +112,22 @@ def _border(point, normal, ahead, matrix):
 
 
 @inner
-def _residual(point):
+def write_tangent(point, normal, matrix):
+    """Write the tangent at a point, in the direction of `normal`, and the determinant."""
+    border(point, normal, 0.0, matrix)
+    determinant = solve(matrix)
+    size = 0.0
+    for j in range(DIMENSIONS):
+        size += matrix[j, DIMENSIONS + 1] ** 2
+    size = np.sqrt(size)
+    for j in range(DIMENSIONS):
+        point[TANGENT + j] = matrix[j, DIMENSIONS + 1] / size if abs(determinant) > 0.0 else 0.0
+    # The bordering row counts only by its part along the tangent, 1/size.
+    point[DETERMINANT] = determinant * size
+
+
+@inner
+def residual_of(point):
     """Return |P^n(x) - x|; infinity if the motion is not complete."""
     if point[OUTCOME] != COMPLETE:
         return np.inf
@@ -128,10 +143,10 @@ def _evaluate(statement, unit, point, events, room):
     begun, laws, backlash, bearings, visits, longest, tolerance, nu = statement
     samples, per_period, segments, workspace, _ = room
     for i in range(len(segments)):
-        _copy(begun[i], segments[i])
+        copy(begun[i], segments[i])
         segments[i, 0] *= nu / (point[SIZE] * unit)
     state = point[END : END + SIZE]
-    _copy(point[:SIZE], state)
+    copy(point[:SIZE], state)
     jacobian = point[JACOBIAN:TANGENT].reshape((SIZE, DEVIATIONS))
     jacobian[:, :] = 0.0
     for i in range(SIZE):
@@ -168,17 +183,17 @@ def _land(statement, unit, points, events, row, origin, normal, corrections, roo
     """
     matrix = room[-1]
     point, trial = points[row], points[-1]
-    _copy(point[:DIMENSIONS], trial)
+    copy(point[:DIMENSIONS], trial)
     best, share, shortest = np.inf, 0.0, 0.0
     while share >= shortest:
         _evaluate(statement, unit, trial, events[-1], room)
-        residual = _residual(trial)
+        residual = residual_of(trial)
         if residual < (1.0 - 0.1 * share) * best or best == np.inf:
             best, share = residual, 1.0
-            _copy(trial, point)
+            copy(trial, point)
             count = int(trial[N_EVENTS])
             for i in range(count):
-                _copy(events[-1, i], events[row, i])
+                copy(events[-1, i], events[row, i])
             if corrections == 0 or best < ROUNDED or best == np.inf:
                 break
             corrections -= 1
@@ -186,7 +201,7 @@ def _land(statement, unit, points, events, row, origin, normal, corrections, roo
             ahead = 0.0
             for j in range(DIMENSIONS):
                 ahead += normal[j] * (point[j] - origin[j])
-            _border(point, normal, ahead, matrix)
+            border(point, normal, ahead, matrix)
             if not abs(solve(matrix)) > 0.0:
                 break
         else:
@@ -195,16 +210,7 @@ def _land(statement, unit, points, events, row, origin, normal, corrections, roo
             trial[j] = point[j] - share * matrix[j, DIMENSIONS]
         if not trial[SIZE] > 0.0:
             break
-    _border(point, normal, 0.0, matrix)
-    determinant = solve(matrix)
-    size = 0.0
-    for j in range(DIMENSIONS):
-        size += matrix[j, DIMENSIONS + 1] ** 2
-    size = np.sqrt(size)
-    for j in range(DIMENSIONS):
-        point[TANGENT + j] = matrix[j, DIMENSIONS + 1] / size if abs(determinant) > 0.0 else 0.0
-    # The bordering row counts only by its part along the tangent, 1/size.
-    point[DETERMINANT] = determinant * size
+    write_tangent(point, normal, matrix)
     return best < LARGEST_RESIDUAL
 
 
@@ -314,10 +320,10 @@ def trace(statement, unit, corrections, length, longest, limits, points, events,
                 normal[j] = before[TANGENT + j]
                 origin[j] = before[j] + length * normal[j]
             _predict(points, row - 1, length, nodes, slopes, table)
-            _copy(point[:DIMENSIONS], guess)
+            copy(point[:DIMENSIONS], guess)
         else:
-            _copy(point[TANGENT : TANGENT + DIMENSIONS], normal)
-            _copy(point[:DIMENSIONS], origin)
+            copy(point[TANGENT : TANGENT + DIMENSIONS], normal)
+            copy(point[:DIMENSIONS], origin)
         most = corrections if follows or length == 0.0 else 0
         landed = _land(statement, unit, points, events, row, origin, normal, most, room)
         if not follows:
