@@ -57,23 +57,23 @@ APART = N_ROWS
 DAMPING = APART + SIZE * DEVIATIONS
 """Row of the integral of the slope D of the damping law."""
 
-HERE = DAMPING + 1
-SLOPES = HERE + SIZE
+_HERE = DAMPING + 1  # the deviation that is being moved
 (
-    STIFFNESS,
-    RECOIL_STIFFNESS,
-    SUPPORT,
-    BEARING_DAMPED,
-    DAMPED,
-    RECOIL_DAMPED,
-    OWN,
-    RECOIL_OWN,
-    STEPS,
-    _END,
-) = (SLOPES + i * ORDER for i in range(1, 11))
-
-ALL_ROWS = _END
-"""Rows of the workspace."""
+    _SLOPES,  # the series of D
+    _KNOWN,  # the series of dv
+    # Factors in the recurrence for the coefficients of degree k + 1.
+    _STIFFNESS,  # of dy: (g - 1 - 2 mu) c
+    _RECOIL_STIFFNESS,  # -2 mu c
+    _SUPPORT,  # of db: -w^2
+    _BEARING_DAMPED,  # of db': -2 zeta w
+    _DAMPED,  # of the force of damping: -1 - 2 mu
+    _RECOIL_DAMPED,  # -2 mu
+    _OWN,  # the same times the first coefficient of D
+    _RECOIL_OWN,
+    _STEPS,  # of dv and db': 1
+    ALL_ROWS,
+) = range(_HERE + SIZE, _HERE + SIZE + 12 * ORDER, ORDER)
+"""First rows of ORDER rows each; the last is the number of rows of the workspace."""
 
 
 def _slopes(rows, powers, step):
@@ -102,58 +102,57 @@ def _prepare(rows, powers):
     slopes, integral = _slopes(rows, powers, step), rows[DAMPING]
     for k, slope in enumerate(slopes):
         integral = slope.times_plus(step * (1.0 / (k + 1.0)), integral)
-        rows[SLOPES + k] = slope
+        rows[_SLOPES + k] = slope
     rows[DAMPING] = integral
     share = recoil - 1.0
     elastic = rows[ELASTIC] * step
-    factors = (
-        (STIFFNESS, (rows[FRICTION] + share) * elastic),
-        (RECOIL_STIFFNESS, recoil * elastic),
-        (SUPPORT, -rows[BEARING_STIFFNESS] * step),
-        (BEARING_DAMPED, -rows[BEARING_DAMPING] * step),
-        (DAMPED, share * step),
-        (RECOIL_DAMPED, recoil * step),
-        (OWN, share * step * slopes[0]),
-        (RECOIL_OWN, recoil * step * slopes[0]),
-        (STEPS, step),
-    )
-    for row, factor in factors:
+    factors = {
+        _STIFFNESS: (rows[FRICTION] + share) * elastic,
+        _RECOIL_STIFFNESS: recoil * elastic,
+        _SUPPORT: -rows[BEARING_STIFFNESS] * step,
+        _BEARING_DAMPED: -rows[BEARING_DAMPING] * step,
+        _DAMPED: share * step,
+        _RECOIL_DAMPED: recoil * step,
+        _OWN: share * step * slopes[0],
+        _RECOIL_OWN: recoil * step * slopes[0],
+        _STEPS: step,
+    }
+    for row, factor in factors.items():
         for k in range(ORDER):
             rows[row + k] = factor * (1.0 / (k + 1.0))
 
 
-def _carry(rows, powers):
-    """Move one deviation to the end of the step."""
-    y, v, b, rate = (rows[HERE + i] for i in range(SIZE))
-    ends, earlier = [y, v, b, rate], []
+def _carry(rows, nonlinear):
+    """Move one deviation to the end of the step.
+
+    From dv_k to dv_k+1 takes one multiply-add; the processor does all other work meanwhile.
+    """
+    y, v, b, rate = ends = [rows[_HERE + i] for i in range(SIZE)]
     for k in range(ORDER):
-        bearing = rows[BEARING_DAMPED + k].times_plus(rate, rows[SUPPORT + k] * b)
-        v_known = rows[STIFFNESS + k].times_plus(y, bearing)
-        rate_known = rows[RECOIL_STIFFNESS + k].times_plus(y, bearing)
-        if powers > 1 and k > 0:
-            force = None
-            for i in range(k, 0, -1):
-                one, other = rows[SLOPES + i], earlier[k - i]
-                force = one * other if force is None else one.times_plus(other, force)
-            v_known = rows[DAMPED + k].times_plus(force, v_known)
-            rate_known = rows[RECOIL_DAMPED + k].times_plus(force, rate_known)
-        earlier.append(v)
-        step = rows[STEPS + k]
-        y, b = step * v, step * rate
-        v, rate = (
-            rows[OWN + k].times_plus(v, v_known),
-            rows[RECOIL_OWN + k].times_plus(v, rate_known),
-        )
+        rows[_KNOWN + k] = v
+        bearing = rows[_BEARING_DAMPED + k].times_plus(rate, rows[_SUPPORT + k] * b)
+        v_known = rows[_STIFFNESS + k].times_plus(y, bearing)
+        rate_known = rows[_RECOIL_STIFFNESS + k].times_plus(y, bearing)
+        if nonlinear and k > 0:
+            force = rows[_SLOPES + k] * rows[_KNOWN]
+            for i in range(k - 1, 0, -1):
+                force = rows[_SLOPES + i].times_plus(rows[_KNOWN + k - i], force)
+            v_known = rows[_DAMPED + k].times_plus(force, v_known)
+            rate_known = rows[_RECOIL_DAMPED + k].times_plus(force, rate_known)
+        y, b = rows[_STEPS + k] * v, rows[_STEPS + k] * rate
+        rate = rows[_RECOIL_OWN + k].times_plus(v, rate_known)
+        v = rows[_OWN + k].times_plus(v, v_known)
         ends = [end + one for end, one in zip(ends, (y, v, b, rate), strict=True)]
+        rows.settle()
     for i, end in enumerate(ends):
-        rows[HERE + i] = end
+        rows[_HERE + i] = end
 
 
 _prepare_linear = unrolled(lambda rows: _prepare(rows, 1))
 _prepare_quadratic = unrolled(lambda rows: _prepare(rows, 2))
 _prepare_cubic = unrolled(lambda rows: _prepare(rows, 3))
-_carry_linear = unrolled(lambda rows: _carry(rows, 1))
-_carry_nonlinear = unrolled(lambda rows: _carry(rows, 2))
+_carry_linear = unrolled(lambda rows: _carry(rows, False))
+_carry_nonlinear = unrolled(lambda rows: _carry(rows, True))
 
 
 @inner(inline="never")
@@ -167,13 +166,13 @@ def _carry_over(like, work, powers):
         _prepare_cubic(like, work)
     for i in range(APART, APART + DEVIATIONS):
         for j in range(SIZE):
-            store(work, HERE + j, load(like, work, i + j * DEVIATIONS))
+            store(work, _HERE + j, load(like, work, i + j * DEVIATIONS))
         if powers == 1:
             _carry_linear(like, work)
         else:
             _carry_nonlinear(like, work)
         for j in range(SIZE):
-            store(work, i + j * DEVIATIONS, load(like, work, HERE + j))
+            store(work, i + j * DEVIATIONS, load(like, work, _HERE + j))
 
 
 @inner
