@@ -22,6 +22,7 @@ TOLERANCE = 1e-15
 """Local error tolerance, relative to y_st and y_st Omega_s: rounding decides the accuracy."""
 
 _CONTRACTION = 0.9  # largest share of the residual that a correction may leave
+_CHUNK = 1024  # points in one call of the compiled code, which bounds the memory that it takes
 _NO_EXTREMA = np.empty((0, 0), EXTREMUM)
 
 _regime_of = inner(regime_of)
@@ -153,12 +154,13 @@ def land(
     law = np.array([run_row(problem, TOLERANCE, 0)]).view(RUN)[:, 0]
     law["most_steps"] *= periods / law["periods"]
     law["periods"], law["first_kept"], law["direction"] = periods, 0.0, 0.0
-    runs = np.repeat(law, len(places))
-    summaries = np.zeros(len(places), SUMMARY)
-    strobes = np.empty((len(places), periods + 1, 2))
+    stated = law, unit, problem.nu
+    most = min(len(places), _CHUNK)
+    runs, summaries = np.repeat(law, most), np.zeros(most, SUMMARY)
+    strobes, work = np.empty((most, periods + 1, 2)), workspace(ALL_ROWS)
     points = np.empty((len(places), curves.POINT_SIZE))
     points[:, : curves.DIMENSIONS] = places
-    stated = law, unit, problem.nu
-    room = runs, stated, corrections, normal, points, summaries, strobes, _NO_EXTREMA
-    _land_all(workspace(ALL_ROWS), *room)
+    for first in range(0, len(points), _CHUNK):
+        chunk = points[first : first + _CHUNK]
+        _land_all(work, runs, stated, corrections, normal, chunk, summaries, strobes, _NO_EXTREMA)
     return points
