@@ -22,6 +22,7 @@ from gearmesh.dynamics.continuation.walks import (
     points_of,
     walk,
 )
+from gearmesh.dynamics.periodic.orbits import sorted_multipliers
 from gearmesh.dynamics.periodic.shots import Shot
 from gearmesh.errors import NoOrbit
 from gearmesh.model.problem import Problem
@@ -121,7 +122,8 @@ class Branch:
     @property
     def multipliers(self) -> np.ndarray:
         """Floquet multipliers, shape (n, number of multipliers)."""
-        return np.array([point.orbit.multipliers for point in self.points])
+        monodromies = np.array([point.motion.monodromy for point in self.points])
+        return sorted_multipliers(np.linalg.eigvals(monodromies))
 
 
 class _Orbits(Sequence[Shot]):

@@ -376,6 +376,10 @@ def newton_correction(moved: Passage, state: np.ndarray) -> np.ndarray:
 
 
 def sorted_multipliers(multipliers: np.ndarray) -> np.ndarray:
-    """Return multipliers as complex numbers, the largest modulus first, conjugates together."""
+    """Return multipliers as complex numbers, the largest modulus first, conjugates together.
+
+    The multipliers of an orbit are the last axis.
+    """
     values = multipliers.astype(complex)
-    return values[np.lexsort([-values.imag, -values.real, -np.abs(values)])]
+    order = np.lexsort([-values.imag, -values.real, -np.abs(values)])
+    return np.take_along_axis(values, order, axis=-1)
