@@ -18,7 +18,8 @@ from gearmesh.model.variants import variant
 VARIANT, NU, SIDE = "b-both", 0.75, 512
 HEIGHTS, RATES = np.linspace(-3.0, 4.0, SIDE), np.linspace(-2.5, 2.5, SIDE)
 N_HEYOKA, N_SCIPY = 512, 4
-"""Starts of the slow methods, drawn at random from the grid."""
+"""Starts of the slow methods, drawn at random from the grid, others in each round."""
+_RANDOM = np.random.default_rng(0)
 
 NEAR = 1e-3
 """Distance from an orbit, in y_st, at which a run counts as arrived."""
@@ -52,23 +53,23 @@ def ours() -> tuple[Found, Basins]:
     return Found(spent / SIDE**2, SIDE**2, 0), found
 
 
-def with_heyoka(known: Basins, seed: int) -> Found:
+def with_heyoka(known: Basins) -> Found:
     """Follow a part of the starts in batches until they are near an orbit."""
-    return _followed(settling.in_batches, N_HEYOKA, known, seed, _near(known))
+    return _followed(settling.in_batches, N_HEYOKA, known, _near(known))
 
 
-def with_heyoka_and_regions(known: Basins, seed: int) -> Found:
+def with_heyoka_and_regions(known: Basins) -> Found:
     """Follow them until they are in the trapping regions that `gearmesh` uses."""
-    return _followed(settling.in_batches, N_HEYOKA, known, seed, _in_regions(known))
+    return _followed(settling.in_batches, N_HEYOKA, known, _in_regions(known))
 
 
-def with_scipy(known: Basins, seed: int) -> Found:
+def with_scipy(known: Basins) -> Found:
     """Follow a few starts one by one until they are near an orbit."""
-    return _followed(settling.one_by_one, N_SCIPY, known, seed, _near(known))
+    return _followed(settling.one_by_one, N_SCIPY, known, _near(known))
 
 
-def _followed(follow, count: int, known: Basins, seed: int, reached: Reached) -> Found:
-    drawn = np.random.default_rng(seed).choice(SIDE**2, count, replace=False)
+def _followed(follow, count: int, known: Basins, reached: Reached) -> Found:
+    drawn = _RANDOM.choice(SIDE**2, count, replace=False)
     states = initial_states(_problem(), HEIGHTS, RATES)[drawn]
     problems = [_problem()] * count
     start = time.process_time()

@@ -1,25 +1,44 @@
-"""The results as a table for the terminal."""
+"""The results as tables for the terminal."""
 
 OURS = "gearmesh"
 """`follow` with its special points, and `basins`."""
 
+BRANCHES = {
+    "branch": "c-material, as follow chooses",
+    "study": "c-material, grid of the study",
+    "atlas": "c-material, grid of the atlas",
+}
+"""Titles of the tables of a branch."""
+
 
 def render(results: dict) -> str:
-    """Return both tables."""
-    lines = ["", f"{'a branch of c-material':44}{'ms/orbit':>10}{'times ours':>12}{'orbits':>9}"]
-    lines[-1] += f"{'apart':>10}"
-    for name, row in results["branch"].items():
-        ratio = row["seconds"] / results["branch"][OURS]["seconds"]
-        lines.append(
-            f"{name:44}{row['seconds'] * 1e3:10.3f}{ratio:12.2f}{row['orbits']:9}"
-            + (f"{row['error']:10.0e}" if name != OURS else f"{'–':>10}")
-        )
-    lines += ["", f"{'basins of b-both at 0.75':44}{'ms/start':>10}{'times ours':>12}{'starts':>9}"]
-    lines[-1] += f"{'differ':>10}"
+    """Return all tables."""
+    lines = []
+    for key, title in BRANCHES.items():
+        lines += _header(title, "orbit", "states", "multipliers")
+        for name, row in results[key].items():
+            apart = (
+                "–" if name == OURS else _short(row[what]) for what in ("error", "multipliers")
+            )
+            lines.append(_row(name, row, results[key], row["orbits"], *apart))
+    lines += _header("basins of b-both at 0.75", "start", "differ")
     for name, row in results["basin"].items():
-        ratio = row["seconds"] / results["basin"][OURS]["seconds"]
-        lines.append(
-            f"{name:44}{row['seconds'] * 1e3:10.3f}{ratio:12.2f}{row['starts']:9}"
-            + (f"{row['differ']:10}" if name != OURS else f"{'–':>10}")
-        )
+        differ = "–" if name == OURS else row["differ"]
+        lines.append(_row(name, row, results["basin"], row["starts"], differ))
+    lines += ["", "states, multipliers: largest distance from ours. Special points are ours alone."]
     return "\n".join(lines)
+
+
+def _header(title: str, unit: str, *columns: str) -> list[str]:
+    named = "".join(f"{column:>13}" for column in columns)
+    return ["", f"{title:46}{f'ms/{unit}':>10}{'times ours':>12}{f'{unit}s':>9}{named}"]
+
+
+def _row(name: str, row: dict, rows: dict, count: int, *columns: object) -> str:
+    ratio = row["seconds"] / rows[OURS]["seconds"]
+    shown = "".join(f"{column:>13}" for column in columns)
+    return f"{name:46}{row['seconds'] * 1e3:10.3f}{ratio:12.2f}{count:9}{shown}"
+
+
+def _short(distance: float | None) -> str:
+    return "–" if distance is None else f"{distance:.0e}"

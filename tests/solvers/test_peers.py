@@ -14,10 +14,13 @@ import numpy as np
 import pytest
 
 from gearmesh.model.variants import VARIANTS, variant
+from gearmesh.solvers.reduced.derivatives.period_map import passage
+from gearmesh.solvers.reduced.derivatives.variational import REGIME
 from gearmesh.study.loading import load_study
 
 pytest.importorskip("heyoka", reason="heyoka is not installed: its wheels are for Linux only")
 
+from benchmarks.orbits import heyoka_lanes, heyoka_map
 from benchmarks.outcome import deviation
 from benchmarks.peers import OURS, PEERS
 from benchmarks.reference import references
@@ -117,3 +120,19 @@ def test_peer_solves_the_same_problem(solver, known):
         found = deviation(outcome, known[name].outcome)
         assert found.extrema_agree, name
         assert found.error < bound, name
+
+
+@pytest.mark.parametrize("name", ["b-both", "c-material", "d-both"])
+def test_a_period_and_its_jacobian_agree_with_heyoka(name):
+    """From states in all regimes, one more than fit into whole batches."""
+    n = 2 * heyoka_lanes.LANES + 1
+    problems = [problem(name, nu, backlash=0.6) for nu in np.linspace(0.7, 1.1, n)]
+    states = np.random.default_rng(1).uniform([-2, -2, -1e-3, -1e-3], [3, 2, 1e-3, 1e-3], (n, 4))
+    moved = [passage(one, state) for one, state in zip(problems, states, strict=True)]
+    assert {-1, 0, 1} <= {regime for one in moved for regime in one.events[:, REGIME]}
+    ends, jacobians = heyoka_lanes.Stroboscopes(problems)(np.arange(n), states)
+    for i, ours in enumerate(moved):
+        one_by_one = heyoka_map.Stroboscope(problems[i])(states[i])
+        for end, jacobian in ((ends[i], jacobians[i]), one_by_one):
+            assert np.abs(end - ours.end).max() < 1e-12
+            assert np.abs(jacobian - ours.jacobian).max() < 1e-12
