@@ -73,7 +73,8 @@ def _correct(point, normal, origin, matrix, trial):
 def _land(like, work, runs, stated, corrections, normal, points, summaries, strobes, extrema):
     """Correct all points; see `land`."""
     law, unit, nu = stated
-    points, runs, summaries = unowned(points), unowned(runs), unowned(summaries)
+    points, runs, law = unowned(points), unowned(runs), unowned(law)
+    summaries, strobes, extrema = unowned(summaries), unowned(strobes), unowned(extrema)
     n = len(points)
     trials, origins = points.copy(), points[:, : curves.DIMENSIONS].copy()
     residuals, chosen = np.full(n, np.inf), np.arange(n)
