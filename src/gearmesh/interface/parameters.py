@@ -112,8 +112,14 @@ def read_limits(pair: Pair, name: str, limits: object) -> tuple[float, float]:
 
 
 def read_values(pair: Pair, name: str, values: object) -> np.ndarray:
-    """Read values of a parameter."""
-    return np.array([_read_value(pair, name, bare(value)) for value in several(values)])
+    """Read values of a parameter; thousands of plain numbers are checked at once."""
+    given = several(values)
+    numbers = np.asarray(given)
+    if numbers.dtype.kind in "iuf" and numbers.ndim == 1:
+        low, high = (_declaration(name)[key] for key in ("low", "high"))
+        if np.all((low <= numbers) & (numbers <= high)):
+            return numbers.astype(float)
+    return np.array([_read_value(pair, name, bare(value)) for value in given])
 
 
 def _read_value(pair: Pair, name: str, given: object, what: str = "") -> float:

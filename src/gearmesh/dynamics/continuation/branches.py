@@ -127,9 +127,13 @@ class Branch:
 
     def _along(self, read: Callable[[Sequence[Point]], np.ndarray]) -> np.ndarray:
         """Return what `read` finds in the points of each piece, for all points."""
+        return np.concatenate([read(part) for part in self._parts if part])
+
+    @cached_property
+    def _parts(self) -> list[Sequence[Point]]:
+        """The points of each piece, without those of the piece before."""
         first, *others = self.chosen or self.pieces
-        parts = [first.points, *(one.points[1:] for one in others)]
-        return np.concatenate([read(part) for part in parts if part])
+        return [first.points, *(one.points[1:] for one in others)]
 
 
 class _Orbits(Sequence[Shot]):

@@ -5,8 +5,8 @@ from collections.abc import Sequence
 import numpy as np
 
 from gearmesh.dynamics.continuation.points import Point
-from gearmesh.dynamics.continuation.tracing import Track, monodromies
-from gearmesh.dynamics.periodic.orbits import judged, sorted_multipliers
+from gearmesh.dynamics.continuation.tracing import Track
+from gearmesh.dynamics.periodic.orbits import judged
 from gearmesh.solvers.reduced.derivatives import curves
 
 
@@ -20,7 +20,7 @@ def extremes(points: Sequence[Point]) -> np.ndarray:
 def multipliers(points: Sequence[Point]) -> np.ndarray:
     """Return the Floquet multipliers of each orbit, the largest modulus first."""
     if isinstance(points, Track):
-        return sorted_multipliers(np.linalg.eigvals(monodromies(points.rows)))
+        return points.multipliers
     return np.array([one.orbit.multipliers for one in points])
 
 
@@ -28,5 +28,5 @@ def judgements(points: Sequence[Point]) -> np.ndarray:
     """Return whether each orbit is stable, and whether it is neutral, shape (n, 2)."""
     if isinstance(points, Track):
         undamped = points.rows[:, curves.DAMPING] == 0.0
-        return np.stack(judged(multipliers(points), undamped), axis=1)
+        return np.stack(judged(points.multipliers, undamped), axis=1)
     return np.array([(one.orbit.stable, one.orbit.neutral) for one in points])

@@ -9,7 +9,7 @@ import numpy as np
 
 from gearmesh.dynamics.continuation.points import Point
 from gearmesh.dynamics.periodic.events import extrema_of, jumping_segments, jumps_of
-from gearmesh.dynamics.periodic.orbits import Orbit
+from gearmesh.dynamics.periodic.orbits import Orbit, sorted_multipliers
 from gearmesh.errors import NoOrbit
 from gearmesh.model.problem import Problem
 from gearmesh.solvers.reduced.derivatives import curves
@@ -27,6 +27,7 @@ from gearmesh.solvers.reduced.derivatives.variational import COMPLETE
 
 MOST_CORRECTIONS = 12
 _MOST_STEPS = 64  # in one call of the compiled code
+_FEW = 128  # points that are not worth the seconds in which the code of the lanes is compiled
 _UNRECORDED = np.empty(0)  # stands for the events of a motion in a lane
 
 
@@ -80,10 +81,15 @@ class Tracer:
 
     def landed(self, places: np.ndarray, normal: np.ndarray, alongs: np.ndarray) -> "Track":
         """Return the points as of `Curve.landed`."""
-        rows = land(self.problem, self.periods, self.unit, places, normal, MOST_CORRECTIONS)
+        if len(places) < _FEW:
+            rows, recorded, _ = trace(self.stated, places, normal, self.unit, MOST_CORRECTIONS)
+            events = _recorded(rows, recorded)
+        else:
+            rows = land(self.problem, self.periods, self.unit, places, normal, MOST_CORRECTIONS)
+            events = [_UNRECORDED] * len(rows)
         met = (rows[:, curves.OUTCOME] == COMPLETE) & (_residuals(rows) < LARGEST_RESIDUAL)
         rows[~met] = np.nan
-        return Track(self, _directed(rows, alongs), [_UNRECORDED] * len(rows))
+        return Track(self, _directed(rows, alongs), events)
 
     def ahead(
         self, point: Point, length: float, longest: float, limits: tuple[float, float]
@@ -247,6 +253,11 @@ class Track(Sequence[Point]):
         if isinstance(index, slice):
             return Track(self.tracer, self.rows[index], self.events[index])
         return self.tracer.read(self.rows[index], self.events[index])
+
+    @cached_property
+    def multipliers(self) -> np.ndarray:
+        """Floquet multipliers of each orbit, the largest modulus first, shape (n, 4)."""
+        return sorted_multipliers(np.linalg.eigvals(monodromies(self.rows)))
 
 
 def chained(first: Sequence[Point], second: Sequence[Point]) -> Sequence[Point]:
