@@ -23,6 +23,7 @@ from gearmesh.solvers.reduced.derivatives.variational import (
     KIND,
     SEGMENT,
     SWITCH,
+    TIME,
     TURN,
     VELOCITY,
 )
@@ -35,43 +36,41 @@ def suspects(points: Sequence[Point]) -> list[tuple[int, set[str]]]:
 
     A piece of the branch is suspect if a test function changes sign in it. It is also suspect if a
     test function may cross 0 twice in it, that is, if its value at an end is less than `_MARGIN`
-    times its change nearby. A function that rises or falls all along, without a grazing nearby,
-    does not cross 0 twice. All test functions are computed for all points at once, so only the
-    suspect pieces need a closer look. The kinds that may lie there are returned with each i.
+    times its change nearby. A function that rises or falls all along does not cross 0 twice; for
+    multipliers, there must be no grazing nearby. All test functions are computed for all points at
+    once, so only the suspect pieces need a closer look. The kinds that may lie there are returned
+    with each i.
     """
-    if isinstance(points, Track) and all(map(len, points.events)):
-        events = _of_track(points)
-    else:
-        events = _of_points(points)
-    functions = np.concatenate([bifurcation_values(points), events.heights, events.velocities])
-    each = len(events.heights) // len(GRAZINGS)
+    events = _of_track(points) if isinstance(points, Track) else _of_points(points)
+    functions = np.concatenate([bifurcation_values(points), *events.heights, events.velocities])
     kinds = [
         *BIFURCATIONS,
-        *(kind for kind in GRAZINGS for _ in range(each)),
+        *(kind for kind, rows in zip(GRAZINGS, events.heights, strict=True) for _ in rows),
         *["switching"] * len(events.velocities),
     ]
-    heights = slice(len(BIFURCATIONS), len(BIFURCATIONS) + len(events.heights))
     passes = events.beyond[:, 1:] != events.beyond[:, :-1]
     grazes = passes.any(axis=0)
-    comparable = np.ones((len(functions), len(points) - 1), bool)
-    comparable[heights] = events.extrema[1:] == events.extrema[:-1]
     left, right = functions[:, :-1], functions[:, 1:]
     change = np.zeros((len(functions), len(points) + 1))  # nothing changes beyond the ends
+    change[:, 1:-1] = right - left
+    first = len(BIFURCATIONS)
+    for rows, counts in zip(events.heights, events.counts, strict=True):
+        change[first : first + len(rows), 1:-1][:, counts[1:] != counts[:-1]] = np.nan
+        first += len(rows)
     with np.errstate(invalid="ignore"):
-        change[:, 1:-1] = np.where(comparable, right - left, np.nan)
         size = np.abs(change)
         nearby = np.fmax(np.fmax(size[:, :-2], size[:, 2:]), size[:, 1:-1])
         near = np.fmin(np.abs(left), np.abs(right)) < _MARGIN * nearby
         goes_on = change[:, 1:] * change[:, :-1] > 0.0
-        goes_on[heights] = False
-        goes_on[:, 1:-1] &= ~(grazes[1:] | grazes[:-1])
+        goes_on[: len(BIFURCATIONS), 1:-1] &= ~(grazes[1:] | grazes[:-1])
         near &= ~(goes_on[:, 1:] & goes_on[:, :-1])
-        near |= comparable & (left * right <= 0.0)
-    near[heights] |= np.repeat(passes, each, axis=0)
+        near |= (left * right <= 0.0) & ~np.isnan(change[:, 1:-1])
     found: dict[int, set[str]] = {}
     for i, k in np.argwhere(near.T).tolist():
         found.setdefault(i, set()).add(kinds[k])
-    return list(found.items())
+    for i, k in np.argwhere(passes.T).tolist():
+        found.setdefault(i, set()).add(GRAZINGS[k])
+    return sorted(found.items())
 
 
 class _Events(NamedTuple):
@@ -79,12 +78,11 @@ class _Events(NamedTuple):
 
     Attributes
     ----------
-    heights : ndarray, shape (2 k, n)
-        The distances of extrema from the front end of their regime, then from the back end: first
-        the least one, then those of all extrema in their order in time. A pair of grazings may
-        leave the least distance, and the regimes that are passed, as they were.
-    extrema : ndarray of int, shape (n,)
-        How many extrema each orbit has.
+    heights : list of two ndarray, shape (k, n)
+        The distances of extrema from the front end of their regime, and from the back end. A row
+        follows the same extremum as long as their number stays.
+    counts : ndarray of int, shape (2, n)
+        How many extrema each orbit has in each of these arrays.
     velocities : ndarray, shape (m, n)
         The velocities where C(t) jumps. Such a velocity counts only if y'' changes sign at the
         jump, at this point or a neighbouring one; otherwise it is not-a-number.
@@ -93,59 +91,77 @@ class _Events(NamedTuple):
         the passages of that end, or of the extrema beyond it.
     """
 
-    heights: np.ndarray
-    extrema: np.ndarray
+    heights: list[np.ndarray]
+    counts: np.ndarray
     velocities: np.ndarray
     beyond: np.ndarray
 
 
 def _of_points(points: Sequence[Point]) -> _Events:
     """Return the event functions of points."""
-    both = [[extrema(point.motion)[:, 1] for point in points] for extrema in (FRONT, BACK)]
+    both = [[extrema(point.motion) for point in points] for extrema in (FRONT, BACK)]
+    counts = np.array([list(map(len, extrema)) for extrema in both])
     jumps = [point.motion.stiffness_jumps for point in points]
     fewest = min(map(len, jumps))
     events = np.array([one[:fewest] for one in jumps])
     turning = events[:, :, BEFORE] * events[:, :, AFTER] < 0.0
     return _Events(
-        np.concatenate([_with_least(_side_by_side(heights)) for heights in both]),
-        np.array([len(heights) for heights in both[0]]),
+        [_followed(*np.concatenate(one).T, n) for one, n in zip(both, counts, strict=True)],
+        counts,
         _counting(events[:, :, VELOCITY].T, turning.T),
-        np.array([[(h < 0.0).sum() for h in heights] for heights in both]),
+        np.array([[(one[:, 1] < 0.0).sum() for one in extrema] for extrema in both]),
     )
-
-
-def _side_by_side(heights: list[np.ndarray]) -> np.ndarray:
-    """Return the heights of each orbit in a column; not-a-number fills the shorter ones."""
-    most = max(map(len, heights))
-    return np.array([np.append(one, np.full(most - len(one), np.nan)) for one in heights]).T
-
-
-def _with_least(heights: np.ndarray) -> np.ndarray:
-    """Return heights, and above them the least distance from 0 in each column."""
-    least = np.fmin.reduce(np.abs(heights), axis=0, initial=np.inf)
-    return np.concatenate([least[None], heights])
 
 
 def _of_track(track: Track) -> _Events:
     """Return the event functions of points that compiled code found, all at once."""
-    tracer, counts = track.tracer, track.rows[:, curves.N_EVENTS].astype(int)
-    events, first = np.concatenate(track.events), np.cumsum(counts) - counts
+    tracer, n = track.tracer, len(track)
+    events = np.concatenate(track.events)
+    point = np.repeat(np.arange(n), track.rows[:, curves.N_EVENTS].astype(int))
     kind, height = events[:, KIND], events[:, HEIGHT]
-    levels = np.array([[0.0], [-tracer.problem.backlash]])
-    turns, points = kind == TURN, np.repeat(np.arange(len(track)), counts)
-    extrema = np.add.reduceat(turns, first, dtype=int)
-    order = np.cumsum(turns) - np.repeat(np.cumsum(extrema) - extrema, counts) - 1
-    heights = np.full((extrema.max(), len(track)), np.nan)
-    heights[order[turns], points[turns]] = height[turns]
-    passes = (kind == CROSSING) & (height == levels)
+    turns, counts = events[kind == TURN], np.bincount(point[kind == TURN], minlength=n)
+    heights = _followed(turns[:, TIME], turns[:, HEIGHT], np.sign(-turns[:, AFTER]), counts)
+    levels = 0.0, -tracer.problem.backlash
+    passages = [point[(kind == CROSSING) & (height == level)] for level in levels]
     jumping = (kind == SWITCH) & tracer.jumping[events[:, SEGMENT].astype(int)]
-    jumps = events[jumping].reshape(len(track), -1, EVENT_SIZE).T
+    jumps = events[jumping].reshape(n, -1, EVENT_SIZE).T
     return _Events(
-        np.concatenate([_with_least(heights - level) for level in levels]),
-        extrema,
+        [heights - level for level in levels],
+        np.array([counts, counts]),
         _counting(jumps[VELOCITY], jumps[BEFORE] * jumps[AFTER] < 0.0),
-        np.add.reduceat(passes, first, axis=1, dtype=int),
+        np.array([np.bincount(one, minlength=n) for one in passages]),
     )
+
+
+def _followed(
+    times: np.ndarray, heights: np.ndarray, kinds: np.ndarray, counts: np.ndarray
+) -> np.ndarray:
+    """Return the heights of the extrema of successive orbits, each extremum in a row.
+
+    Maxima and minima follow in turn. So where the first extremum is of another kind than that of
+    the orbit before, one has passed the initial phase.
+
+    Parameters
+    ----------
+    times, heights, kinds : ndarray, shape (m,)
+        Of all extrema of all orbits, in the order of the orbits and of time.
+    counts : ndarray of int, shape (n,)
+        Number of extrema of each orbit.
+
+    Returns
+    -------
+    ndarray, shape (k, n)
+        Rows of orbits with fewer extrema end with not-a-number.
+    """
+    found = np.full((counts.max(), len(counts)), np.nan)
+    if len(times):
+        begins = np.cumsum(counts) - counts
+        first = np.minimum(begins, len(times) - 1)
+        passed = (np.diff(kinds[first]) != 0.0) * np.sign(np.diff(times[first])).astype(int)
+        shifts = np.append(0, np.cumsum(passed)) - begins
+        order = (np.arange(len(times)) + np.repeat(shifts, counts)) % np.repeat(counts, counts)
+        found[order, np.repeat(np.arange(len(counts)), counts)] = heights
+    return found
 
 
 def _counting(velocities: np.ndarray, turning: np.ndarray) -> np.ndarray:
