@@ -13,6 +13,7 @@ from gearmesh.dynamics.continuation.readings import extremes, judgements, multip
 from gearmesh.dynamics.continuation.resampling import resampled
 from gearmesh.dynamics.continuation.special_points import SpecialPoint, special_points
 from gearmesh.dynamics.continuation.suspects import suspects
+from gearmesh.dynamics.continuation.test_functions import bifurcation_values
 from gearmesh.dynamics.continuation.tracing import first_values
 from gearmesh.dynamics.continuation.walks import (
     CLOSED,
@@ -233,8 +234,9 @@ def _special(pieces: list[Piece]) -> list[tuple[str, Point]]:
     return [
         found
         for piece in pieces
-        for i, kinds in suspects(piece.points)
-        for found in special_points(piece.curve, piece.points, i, kinds)
+        for multipliers in (bifurcation_values(piece.points),)
+        for i, tests in suspects(piece.points, multipliers)
+        for found in special_points(piece.curve, piece.points, i, tests, multipliers)
     ]
 
 

@@ -8,6 +8,7 @@ import numpy as np
 
 from gearmesh.dynamics.continuation.curves import ASTRAY, Curve
 from gearmesh.dynamics.continuation.points import Point
+from gearmesh.dynamics.continuation.test_functions import Test
 from gearmesh.dynamics.continuation.tracing import chained, first_values, geometry
 from gearmesh.dynamics.continuation.walks import Piece
 from gearmesh.dynamics.continuation.zeros import length_between, zeros
@@ -182,7 +183,7 @@ def _searched(curve: Curve, left: Point, right: Point, values: np.ndarray) -> li
         def away(point: Point, value: float = value) -> float:
             return point.values[0] - value
 
-        passages = () if value in ends else zeros(curve, left, right, away, beside)
+        passages = () if value in ends else zeros(curve, left, right, Test("passage", away), beside)
         found += [_moved(curve, point, value) for _, point, _ in passages]
     return sorted(found, key=lambda point: float(left.tangent @ point.place))
 

@@ -14,6 +14,7 @@ from gearmesh.dynamics.continuation.test_functions import (
     BACK,
     FRONT,
     Extrema,
+    Test,
     flip_test,
     torus_test,
 )
@@ -109,7 +110,7 @@ def follow_special(
         for piece in pieces
         for left, right in pairwise(piece.points)
         if point.kind == "fold"
-        for _, cusp in search(piece.curve, left, right, [("cusp", _turned_back(left))])
+        for _, cusp in search(piece.curve, left, right, [Test("cusp", _turned_back(left))])
         for orbit in (cusp.orbit.at_phase(problem.initial_phase),)
     ]
     points = points_of(pieces)

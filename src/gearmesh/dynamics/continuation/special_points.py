@@ -4,29 +4,24 @@ import operator
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cache
-from itertools import combinations
+from itertools import combinations, pairwise
+
+import numpy as np
 
 from gearmesh.dynamics.continuation.curves import Curve
 from gearmesh.dynamics.continuation.kinds import BIFURCATIONS, GRAZINGS
 from gearmesh.dynamics.continuation.points import Point
 from gearmesh.dynamics.continuation.test_functions import (
-    Function,
     Test,
-    bifurcation_tests,
+    bifurcation_test,
     bifurcation_values,
-    event_tests,
 )
-from gearmesh.dynamics.continuation.zeros import (
-    Beside,
-    keeps_its_sign,
-    length_between,
-    zeros,
-)
+from gearmesh.dynamics.continuation.zeros import Beside, length_between, zeros
 from gearmesh.dynamics.periodic.shots import Motion, Shot
 from gearmesh.solvers.reduced.derivatives.variational import AFTER, BEFORE, VELOCITY
 
-_AROUND = 2  # points on each side of a piece that help to locate roots in it
 _NARROWEST_PIECE = 1e-11  # between two grazings, in which multipliers are tested
+_FAR = 2.0  # times its changes between points nearby: more than a function falls between two
 _LARGEST_VALUE = 1e-7  # of a test function at its root: more is a jump
 _LEAST_SLOPE = 1e-6  # of the parameter along a branch at both sides of a fold
 _SAME_SWITCHING = 1e-9  # distance in the parameter
@@ -54,67 +49,74 @@ class SpecialPoint:
 
 
 def search(
-    curve: Curve,
-    left: Point,
-    right: Point,
-    tests: list[Test],
-    beside: Beside | None = None,
-    around: Sequence[Point] = (),
+    curve: Curve, left: Point, right: Point, tests: list[Test], beside: Beside | None = None
 ) -> list[tuple[str, Point]]:
     """Return where tests pass 0 between two neighbouring points of a curve, in their order."""
-    if not tests:
-        return []
     beside = beside or cache(curve.beside)
     found = [
-        (kind, point)
-        for kind, test in tests
-        for start, point, end in zeros(
-            curve, left, right, test, beside, around, kind == "grazing_back" and curve.gap_moves
-        )
-        if _confirmed(kind, test, start, point, end)
+        (test.kind, point)
+        for test in tests
+        for start, point, end in zeros(curve, left, right, test, beside)
+        if _confirmed(test, start, point, end)
     ]
     return _in_order(left, found)
 
 
 def special_points(
-    curve: Curve, points: Sequence[Point], i: int, kinds: set[str]
+    curve: Curve, points: Sequence[Point], i: int, tests: list[Test], multipliers: np.ndarray
 ) -> list[tuple[str, Point]]:
-    """Return the special points of some kinds between points i and i + 1, in their order.
+    """Return the special points that tests show between points i and i + 1, in their order.
 
     Multipliers have a root singularity where the orbit grazes, so they are tested in the pieces
     between the grazings and not across them. Wherever an orbit grazes, all of them are tested.
+
+    Parameters
+    ----------
+    curve : Curve
+    points : sequence of Point, length n
+    i : int
+    tests : list of Test
+    multipliers : ndarray, shape (4, n)
+        As of `bifurcation_values`.
     """
     left, right, beside = points[i], points[i + 1], cache(curve.beside)
-    before, after = (
-        [points[k] for k in range(max(first, 0), min(first + _AROUND, len(points)))]
-        for first in (i - _AROUND, i + 2)
-    )
-    around = [*before, *after]
-    nearby = [*before[-1:], left, right, *after[:1]]
-    tests = [
-        (kind, test)
-        for kind, test in event_tests(left, right, kinds)
-        if not keeps_its_sign([test(point) for point in nearby])
-    ]
-    events = _once(search(curve, left, right, tests, beside, around))
-    grazings = [point for kind, point in events if kind in GRAZINGS]
+    bifurcations = [test for test in tests if test.kind in BIFURCATIONS]
+    others = [test for test in tests if test.kind not in BIFURCATIONS]
+    found = _once(search(curve, left, right, others, beside))
+    grazings = [point for kind, point in found if kind in GRAZINGS]
     if not grazings:
-        found = search(curve, left, right, bifurcation_tests(kinds), beside, around)
-        return _in_order(left, events + found)
-    before, after = before[-1:], after[:1]
-    ends = [*before, left, *grazings, right, *after]
-    found, values = events, bifurcation_values(ends)
-    for k in range(len(before), len(ends) - 1 - len(after)):
-        start, end = ends[k : k + 2]
-        if length_between(start, end) > _NARROWEST_PIECE:
-            fours = values[:, max(k - 1, 0) : k + 3].tolist()
-            sought = [
-                kind
-                for kind, four in zip(BIFURCATIONS, fours, strict=True)
-                if not keeps_its_sign(four, smooth=False)
+        return _in_order(left, found + search(curve, left, right, bifurcations, beside))
+    # Nothing changes beyond the ends of the branch.
+    known = multipliers[:, [max(i - 1, 0), i, i + 1, min(i + 2, len(points) - 1)]]
+    far = _far_from_zero(np.hstack([known[:, :2], bifurcation_values(grazings), known[:, 2:]]))
+    for ends, keeps in zip(pairwise([left, *grazings, right]), far.T, strict=True):
+        if length_between(*ends) > _NARROWEST_PIECE:
+            tests = [
+                Test(kind, bifurcation_test(kind))
+                for kind, keeps_its_sign in zip(BIFURCATIONS, keeps.tolist(), strict=True)
+                if not keeps_its_sign
             ]
-            found = found + search(curve, start, end, bifurcation_tests(sought), beside)
+            found = found + search(curve, *ends, tests, beside)
     return _in_order(left, found)
+
+
+def _far_from_zero(values: np.ndarray) -> np.ndarray:
+    """Return whether functions keep their sign between points, as they are far from 0 there.
+
+    Parameters
+    ----------
+    values : ndarray, shape (m, n)
+        At successive points.
+
+    Returns
+    -------
+    ndarray of bool, shape (m, n - 3)
+        For the pieces between two points which have another point on each side.
+    """
+    size, change = np.abs(values), np.abs(np.diff(values))
+    least = np.minimum(size[:, 1:-2], size[:, 2:-1])
+    most = np.maximum(np.maximum(change[:, :-2], change[:, 2:]), change[:, 1:-1])
+    return ((values[:, 1:-2] < 0.0) == (values[:, 2:-1] < 0.0)) & (least > _FAR * most)
 
 
 def _in_order(left: Point, found: list[tuple[str, Point]]) -> list[tuple[str, Point]]:
@@ -133,10 +135,11 @@ def _once(events: list[tuple[str, Point]]) -> list[tuple[str, Point]]:
     return kept
 
 
-def _confirmed(kind: str, test: Function, left: Point, point: Point, right: Point) -> bool:
+def _confirmed(test: Test, left: Point, point: Point, right: Point) -> bool:
     """Return whether the root of a test function is a special point and not a jump."""
-    scale = max(1.0, abs(test(left)), abs(test(right)))
-    if not abs(test(point)) < _LARGEST_VALUE * scale:
+    kind, value = test.kind, test.function
+    scale = max(1.0, abs(value(left)), abs(value(right)))
+    if not abs(value(point)) < _LARGEST_VALUE * scale:
         return False
     if kind == "fold":
         return min(abs(left.slope), abs(right.slope)) > _LEAST_SLOPE

@@ -1,23 +1,20 @@
 """Test functions: functions of the points of a branch that pass 0 at special points."""
 
 import operator
-from collections.abc import Callable, Collection, Sequence
+from collections.abc import Callable, Sequence
+from typing import NamedTuple
 
 import numpy as np
 
-from gearmesh.dynamics.continuation.kinds import BIFURCATIONS, GRAZINGS
 from gearmesh.dynamics.continuation.points import Point
 from gearmesh.dynamics.continuation.tracing import Track, monodromies
 from gearmesh.dynamics.periodic.shots import Motion
 from gearmesh.solvers.reduced.derivatives import curves
 from gearmesh.solvers.reduced.derivatives.multipliers import products
-from gearmesh.solvers.reduced.derivatives.variational import AFTER, BEFORE, VELOCITY
+from gearmesh.solvers.reduced.derivatives.variational import VELOCITY
 
 Function = Callable[[Point], float]
 """A function of the points of a branch."""
-
-Test = tuple[str, Function]
-"""A kind, and a function that passes 0 at special points of this kind."""
 
 Extrema = Callable[[Motion], np.ndarray]
 """Extrema of an orbit, shape (n, 3): time, height, kind (1 or -1)."""
@@ -26,7 +23,26 @@ FRONT: Extrema = operator.attrgetter("extrema")
 BACK: Extrema = operator.attrgetter("gap_extrema")
 """The extrema whose height is 0 where flanks graze, on the front and on the back."""
 
+NOTHING = np.empty((0, 0)), np.empty(0)
+"""No known values."""
+
 _SAME_PHASE = 0.2  # mesh periods between an extremum and the same one further on
+
+
+class Test(NamedTuple):
+    """A function that passes 0 at special points of a kind.
+
+    Attributes
+    ----------
+    kind : str
+    function : callable
+    around : tuple of ndarray, shapes (m, k) and (m,)
+        Places nearby, and values there that are known already.
+    """
+
+    kind: str
+    function: Function
+    around: tuple[np.ndarray, np.ndarray] = NOTHING
 
 
 class _Remembered(dict[Point, float]):
@@ -40,13 +56,9 @@ class _Remembered(dict[Point, float]):
         return value
 
 
-def bifurcation_tests(kinds: Collection[str]) -> list[Test]:
-    """Return the tests of some kinds of bifurcations."""
-    return [
-        (kind, _Remembered(function).__getitem__)
-        for kind, function in zip(BIFURCATIONS, _BIFURCATION_TESTS, strict=True)
-        if kind in kinds
-    ]
+def bifurcation_test(kind: str) -> Function:
+    """Return the test function of one of the `BIFURCATIONS`."""
+    return _Remembered(_BIFURCATION_TESTS[kind]).__getitem__
 
 
 def bifurcation_values(points: Sequence[Point]) -> np.ndarray:
@@ -78,32 +90,15 @@ def torus_test(orbit: Motion) -> float:
     return float("nan") if orbit.undamped else float(products(orbit.monodromy[None])[1, 0])
 
 
-_BIFURCATION_TESTS: tuple[Function, ...] = (
-    operator.attrgetter("slope"),
-    operator.attrgetter("determinant"),
-    lambda point: flip_test(point.motion),
-    lambda point: torus_test(point.motion),
-)
+_BIFURCATION_TESTS: dict[str, Function] = {
+    "fold": operator.attrgetter("slope"),
+    "branch_point": operator.attrgetter("determinant"),
+    "flip": lambda point: flip_test(point.motion),
+    "torus": lambda point: torus_test(point.motion),
+}
 
 
-def event_tests(left: Point, right: Point, kinds: set[str]) -> list[Test]:
-    """Return the tests of some kinds for events that appear or vanish between two points."""
-    tests: list[Test] = []
-    for name, extrema in zip(GRAZINGS, (FRONT, BACK), strict=True):
-        if name in kinds:
-            period = left.motion.period
-            for time, _, kind in extrema(left.motion).tolist():
-                tests.append((name, _height(extrema, time / period, kind)))
-    if "switching" in kinds:
-        turning = set()
-        for point in (left, right):
-            jumps = point.motion.stiffness_jumps
-            turning |= set(np.flatnonzero(jumps[:, BEFORE] * jumps[:, AFTER] < 0.0).tolist())
-        tests += [("switching", _velocity_at(number)) for number in sorted(turning)]
-    return tests
-
-
-def _height(extrema: Extrema, phase: float, kind: float) -> Function:
+def height_near(extrema: Extrema, phase: float, kind: float) -> Function:
     """Return the test of the extremum of a kind near a phase: its height."""
 
     def height(point: Point) -> float:
@@ -119,7 +114,7 @@ def _height(extrema: Extrema, phase: float, kind: float) -> Function:
     return _Remembered(height).__getitem__
 
 
-def _velocity_at(number: int) -> Function:
+def velocity_at(number: int) -> Function:
     """Return the test of a switch of C(t): the velocity there."""
 
     def velocity(point: Point) -> float:

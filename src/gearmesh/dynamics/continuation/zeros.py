@@ -5,8 +5,7 @@ Where it has the same sign at both points, its tangents there show whether it ma
 between. If so, the piece of the branch is halved, and each half is searched.
 """
 
-from collections.abc import Callable, Iterator, Sequence
-from itertools import pairwise
+from collections.abc import Callable, Iterator
 from math import isnan
 from typing import NamedTuple
 
@@ -14,7 +13,7 @@ import numpy as np
 
 from gearmesh.dynamics.continuation.curves import Curve
 from gearmesh.dynamics.continuation.points import Point
-from gearmesh.dynamics.continuation.test_functions import Function
+from gearmesh.dynamics.continuation.test_functions import Function, Test
 from gearmesh.errors import NoOrbit
 
 Beside = Callable[[Point, float], Point]
@@ -27,7 +26,6 @@ _RESOLUTION = 1e-6  # share of a piece; in less of it, rounding errors may hide 
 _KNOWN = 6  # values from which a root is predicted
 _MOST_PREDICTIONS = 6  # after these every second point halves the interval
 _MOST_CORRECTIONS = 50  # of the root of a polynomial
-_FAR = 2.0  # times its changes between points nearby: more than a function falls between two
 _NEAREST = 1e-10  # distance from an abrupt root that stands for it
 _SHARE = 0.99  # of the distance to such a root that a step passes
 
@@ -36,10 +34,8 @@ def zeros(
     curve: Curve,
     left: Point,
     right: Point,
-    test: Function,
+    test: Test,
     beside: Beside,
-    around: Sequence[Point] = (),
-    abrupt: bool = False,
 ) -> Iterator[tuple[Point, Point, Point]]:
     """Yield the points between two others where a function changes sign, and their neighbours.
 
@@ -47,44 +43,29 @@ def zeros(
     ----------
     curve : Curve
     left, right : Point
-    test : callable
+    test : Test
     beside : callable
         As `Beside`.
-    around : sequence of Point
-        Other points nearby, which help to predict roots.
-    abrupt : bool
-        Whether the function is known only where it is positive.
     """
+    # Where the gap moves, what follows a grazing of the back flanks may not be found.
+    abrupt = test.kind == "grazing_back" and curve.gap_moves
     offset = min(_OFFSET, 0.1 * length_between(left, right))
     pieces = [(left, right)]
     while pieces:
         start, end = pieces.pop()
-        values = test(start), test(end)
+        values = test.function(start), test.function(end)
         if any(map(isnan, values)):
             continue
         if (values[0] < 0.0) != (values[1] < 0.0):
             found = (
-                _approach(curve, start, end, test)
+                _approach(curve, start, end, test.function)
                 if abrupt
-                else _locate(curve, start, end, test, around)
+                else _locate(curve, start, end, test)
             )
             yield start, found, end
-        elif _may_dip(test, (start, values[0]), (end, values[1]), beside, offset):
+        elif _may_dip(test.function, (start, values[0]), (end, values[1]), beside, offset):
             middle = curve.between(start, end, start.tangent, 0.5)
             pieces += [(start, middle), (middle, end)]
-
-
-def keeps_its_sign(values: list[float], smooth: bool = True) -> bool:
-    """Return whether a function keeps its sign between the middle two of four successive points.
-
-    It does if it is far from 0, or if it is smooth and rises or falls all along.
-    """
-    if len(values) < 4 or (values[1] < 0.0) != (values[2] < 0.0):
-        return False
-    changes = [after - before for before, after in pairwise(values)]
-    monotone = smooth and (min(changes) > 0.0 or max(changes) < 0.0)
-    least, most = min(map(abs, values[1:3])), max(map(abs, changes))
-    return monotone or least > _FAR * most
 
 
 def length_between(left: Point, right: Point) -> float:
@@ -118,23 +99,21 @@ def _may_dip(
     return bool(sign * before + down * where < 0.0)
 
 
-def _locate(
-    curve: Curve, left: Point, right: Point, test: Function, around: Sequence[Point]
-) -> Point:
+def _locate(curve: Curve, left: Point, right: Point, test: Test) -> Point:
     """Return the point between two others where a test function passes 0.
 
     A polynomial through the values that are known nearby predicts the root, again and again.
     """
     normal, length = left.tangent, length_between(left, right)
-    low, high, *others = [
-        _Known(float(normal @ (point.place - left.place)) / length, value, point)
-        for point in (left, right, *around)
-        if not isnan(value := test(point))
-    ]
+    low = _Known(0.0, test.function(left), left)
+    high = _Known(1.0, test.function(right), right)
+    places, values = test.around
+    shares = (places - left.place) @ normal / length if values.size else values
+    others = list(zip(shares.tolist(), values.tolist(), strict=True))
     least, count = _RESOLUTION * max(abs(low.value), abs(high.value)), 0
     while (high.share - low.share) * length > _ROOT_WIDTH:
-        others = sorted(others, key=_size)[: _KNOWN - 2]
-        share = _root([low, high, *others])
+        others = sorted(others, key=lambda other: abs(other[1]))[: _KNOWN - 2]
+        share = _root([low[:2], high[:2], *others])
         nearest = min((low, high), key=lambda known: abs(known.share - share))
         here = abs(nearest.share - share) * length < _ROOT_WIDTH
         if here and abs(nearest.value) <= least:
@@ -143,16 +122,16 @@ def _locate(
             share = 0.5 * (low.share + high.share)
         part = (share - low.share) / (high.share - low.share)
         point = curve.between(low.point, high.point, normal, part)
-        new = _Known(share, test(point), point)
+        new = _Known(share, test.function(point), point)
         if not abs(new.value) > 0.0:
             return point
         near = abs(share - nearest.share) < _RESOLUTION
         if near and 0.5 * abs(nearest.value) < abs(new.value) <= least:
             return min(nearest, new, key=_size).point  # the change is a rounding error
         if (new.value < 0.0) == (low.value < 0.0):
-            others, low = [*others, low], new
+            others, low = [*others, low[:2]], new
         else:
-            others, high = [*others, high], new
+            others, high = [*others, high[:2]], new
         count += 1
     return min(low, high, key=_size).point
 
@@ -169,16 +148,16 @@ def _size(known: _Known) -> float:
     return abs(known.value)
 
 
-def _root(known: list[_Known]) -> float:
+def _root(known: list[tuple[float, float]]) -> float:
     """Return the root between the first two places of the polynomial through all of them."""
-    shares = [one.share for one in known]
-    factors = [one.value for one in known]
+    shares = [share for share, _ in known]
+    factors = [value for _, value in known]
     for order in range(1, len(known)):
         for i in range(len(known) - 1, order - 1, -1):
             factors[i] = (factors[i] - factors[i - 1]) / (shares[i] - shares[i - order])
     low, high = shares[:2]
-    falls = known[0].value > known[1].value
-    share = low - known[0].value / factors[1]
+    falls = known[0][1] > known[1][1]
+    share = low - known[0][1] / factors[1]
     for _ in range(_MOST_CORRECTIONS):
         value, slope = factors[-1], 0.0
         for factor, other in zip(factors[-2::-1], shares[-2::-1], strict=True):
