@@ -14,8 +14,8 @@ from gearmesh.solvers.reduced.derivatives.landings import land
 from gearmesh.solvers.reduced.derivatives.period_map import FIXED, passage
 from gearmesh.solvers.reduced.derivatives.variational import REGIME
 
-MANY = 12
-"""Copies of some points that are too many to be corrected one by one."""
+MANY = 100
+"""Copies of eleven points that need the lanes, and more than one call of their code."""
 
 LAWS = ["a-conservative", "b-both", "b-lubricant", "c-both", "d-lubricant", "d-both", "h-material"]
 
@@ -66,13 +66,15 @@ def test_points_are_those_that_are_corrected_one_by_one(name, nu, periods):
 
 
 def test_a_place_that_leads_to_no_orbit_is_marked():
+    """The others need a correction, and none of them is marked."""
     orbit = find_orbit(problem(0.9, "c-material"))
     curve = Curve(field_family(orbit.problem, "nu"), 1, (0.5,), 0.0, orbit, stretches=True)
     up = np.eye(5)[4]
     for count in (9, 11 * MANY):
         places = np.tile(np.append(orbit.state, 1.8), (count, 1))
-        places[4, :2] = 1e12, 0.0
-        points = curve.landed(places, up, np.tile(up, (count, 1)))
+        near = places + 1e-6 * (1.0 - up)
+        near[4, :2] = 1e12, 0.0
+        points = curve.landed(near, up, np.tile(up, (count, 1)))
         found, others = np.array([point.place for point in points]), np.arange(count) != 4
         assert np.isnan(found[4]).all()
         np.testing.assert_allclose(found[others], places[others], atol=1e-13)

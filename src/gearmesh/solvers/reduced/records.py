@@ -39,7 +39,7 @@ from gearmesh.solvers.reduced.workspace import (
     B,
     Y,
 )
-from gearmesh.solvers.response import DIVERGED, MEASURED, STEP_LIMIT
+from gearmesh.solvers.response import DIVERGED, MEASURED, OK, STEP_LIMIT
 
 RUN = np.dtype(
     [
@@ -171,6 +171,7 @@ def finish(work, width, lane, summary):
     elif get(work, width, PERIOD, lane) < get(work, width, PERIODS, lane):
         summary.status = STEP_LIMIT
     else:
+        summary.status = OK
         take_value(summary, y)
         summary.contact_losses = int(get(work, width, CONTACT_LOSSES, lane))
         summary.square_integral = get(work, width, SQUARE_INTEGRAL, lane)
