@@ -117,7 +117,13 @@ def test_a_branch_is_resampled_at_values_with_units(pair, orbit):
     assert branch.resampled(0.7).at(0).nu == 0.7
     with pytest.raises(gm.NoOrbit, match="none of the values of nu"):
         branch.resampled([0.5])
-    for wrong, shown in (("fast", "'fast'"), ([0.7, -1.0], "-1"), (["7 mm"], "'7 mm'")):
+    for wrong, shown in (
+        ("fast", "'fast'"),
+        ([0.7, -1.0], "-1"),
+        (["7 mm"], "'7 mm'"),
+        ([True, 0.7], "True"),
+        ([0.7, float("nan")], "nan"),
+    ):
         with pytest.raises(gm.InputError, match=f"^nu: found {shown}"):
             branch.resampled(wrong)
 

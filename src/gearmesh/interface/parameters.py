@@ -112,13 +112,12 @@ def read_limits(pair: Pair, name: str, limits: object) -> tuple[float, float]:
 
 
 def read_values(pair: Pair, name: str, values: object) -> np.ndarray:
-    """Read values of a parameter; thousands of plain numbers are checked at once."""
+    """Read values of a parameter; thousands of floats are checked at once."""
     given = several(values)
-    numbers = np.asarray(given)
-    if numbers.dtype.kind in "iuf" and numbers.ndim == 1:
-        low, high = (_declaration(name)[key] for key in ("low", "high"))
-        if np.all((low <= numbers) & (numbers <= high)):
-            return numbers.astype(float)
+    if set(map(type, given)) == {float}:
+        numbers, stated = np.array(given), _declaration(name)
+        if np.all((stated["low"] <= numbers) & (numbers <= stated["high"])):
+            return numbers
     return np.array([_read_value(pair, name, bare(value)) for value in given])
 
 
