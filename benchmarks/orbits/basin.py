@@ -18,7 +18,7 @@ from gearmesh.model.variants import variant
 VARIANT, NU, SIDE = "b-both", 0.75, 512
 HEIGHTS, RATES = np.linspace(-3.0, 4.0, SIDE), np.linspace(-2.5, 2.5, SIDE)
 N_HEYOKA, N_SCIPY = 512, 4
-"""Starts of the slow methods, drawn at random from the grid, others in each round."""
+"""Number of starts of the slow methods. Each round draws new ones from the grid, at random."""
 _RANDOM = np.random.default_rng(0)
 
 NEAR = 1e-3

@@ -48,7 +48,7 @@ class Found:
 
 
 def ours(nus: np.ndarray | None = None) -> tuple[Found, Branch]:
-    """Follow the branch with its special points; then find the orbits at `nus`, if given."""
+    """Follow the branch and find its special points, and then the orbits at `nus`, if given."""
     pair = gm.paper()
     start = time.process_time()
     found = gm.follow(gm.find_orbit(pair, VARIANT, BEGIN), "nu", LIMITS).found

@@ -39,7 +39,7 @@ def one_by_one(
     first : ndarray, shape (4,)
         The orbit at the first value.
     points : int
-        Through so many known orbits each next one is extrapolated.
+        Number of known orbits from which the next one is extrapolated.
     """
     n = len(values)
     states, jacobians = np.empty((n, 4)), np.empty((n, 4, 4))
@@ -86,7 +86,14 @@ def extrapolated(values: np.ndarray, states: np.ndarray) -> np.ndarray:
 
 
 def _weights(values: np.ndarray, points: int) -> np.ndarray:
-    """Return the weights of Lagrange's polynomials, through so many values, at the next one.
+    """Return the weights with which Lagrange's polynomials give the next state from those before.
+
+    Parameters
+    ----------
+    values : ndarray, shape (n,)
+        Of the parameter.
+    points : int
+        Number of states in each polynomial.
 
     Returns
     -------

@@ -37,8 +37,9 @@ def test_chaos_grows_as_fast_as_two_runs_part():
     case = problem(1.0, "a-conservative", **HEAVY)
     start = np.array([3.5, 2.0, -2.0, 0.0])
     spectrum = lyapunov_spectrum(case, start, 1000, transient=100)
-    # This motion is regular for hundreds of periods at a time. Starts that differ by 1e-7 therefore
-    # give exponents of 4 to 23 standard errors. Three are asked, as below for regular motion.
+    # This motion is regular for hundreds of periods at a time, so rounding decides how large the
+    # exponent is: between 4 and 23 standard errors for starts that differ by 1e-7. The test asks
+    # for 3, the same as the test of regular motion below.
     assert spectrum.exponents[0] > 3.0 * spectrum.errors[0] > 0.0
     # Without mesh damping the mesh alone keeps areas: its two exponents cancel.
     assert spectrum.exponents[[0, -1]].sum() == pytest.approx(0.0, abs=1e-4)

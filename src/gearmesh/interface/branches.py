@@ -106,7 +106,8 @@ class Branch:
         """Return the same branch with points at values of the parameter instead of its own.
 
         The orbits are predicted by polynomials through those of this branch, and corrected by
-        Newton's method. So they are found faster than one by one.
+        Newton's method. So they are found faster than one by one. The first call with 128 values or
+        more compiles code for about ten seconds.
 
         Parameters
         ----------

@@ -234,9 +234,9 @@ def _special(pieces: list[Piece]) -> list[tuple[str, Point]]:
     return [
         found
         for piece in pieces
-        for multipliers in (bifurcation_values(piece.points),)
-        for i, tests in suspects(piece.points, multipliers)
-        for found in special_points(piece.curve, piece.points, i, tests, multipliers)
+        for bifurcating in (bifurcation_values(piece.points),)
+        for i, tests in suspects(piece.points, bifurcating)
+        for found in special_points(piece.curve, piece.points, i, tests, bifurcating)
     ]
 
 

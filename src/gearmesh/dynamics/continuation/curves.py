@@ -141,15 +141,16 @@ class Curve:
         if self.tracer is not None:
             return self.tracer.landed(places, normal, alongs)
         return [
-            self._point_or_none(*one) for one in zip(places, repeat(normal), alongs, strict=False)
+            self._point_or_nan(*one) for one in zip(places, repeat(normal), alongs, strict=False)
         ]
 
-    def _point_or_none(self, place: np.ndarray, normal: np.ndarray, along: np.ndarray) -> Point:
+    def _point_or_nan(self, place: np.ndarray, normal: np.ndarray, along: np.ndarray) -> Point:
+        """Return the point as of `point`; one of not-a-numbers if there is no orbit."""
         try:
             return self.point(place, normal, along)
         except NoOrbit:
-            none, values = place * np.nan, (float("nan"),) * len(self.units)
-            return Point(none, values, none, float("nan"), self.like, lambda: self.like)
+            nowhere, values = place * np.nan, (float("nan"),) * len(self.units)
+            return Point(nowhere, values, nowhere, float("nan"), self.like, lambda: self.like)
 
     def beside(self, point: Point, length: float) -> Point:
         """Return the point at a small distance along the tangent, where the curve still is."""

@@ -63,7 +63,7 @@ def search(
 
 
 def special_points(
-    curve: Curve, points: Sequence[Point], i: int, tests: list[Test], multipliers: np.ndarray
+    curve: Curve, points: Sequence[Point], i: int, tests: list[Test], bifurcating: np.ndarray
 ) -> list[tuple[str, Point]]:
     """Return the special points that tests show between points i and i + 1, in their order.
 
@@ -76,8 +76,8 @@ def special_points(
     points : sequence of Point, length n
     i : int
     tests : list of Test
-    multipliers : ndarray, shape (4, n)
-        As of `bifurcation_values`.
+    bifurcating : ndarray, shape (4, n)
+        The values of `bifurcation_values` at the points.
     """
     left, right, beside = points[i], points[i + 1], cache(curve.beside)
     bifurcations = [test for test in tests if test.kind in BIFURCATIONS]
@@ -87,7 +87,7 @@ def special_points(
     if not grazings:
         return _in_order(left, found + search(curve, left, right, bifurcations, beside))
     # Nothing changes beyond the ends of the branch.
-    known = multipliers[:, [max(i - 1, 0), i, i + 1, min(i + 2, len(points) - 1)]]
+    known = bifurcating[:, [max(i - 1, 0), i, i + 1, min(i + 2, len(points) - 1)]]
     far = _far_from_zero(np.hstack([known[:, :2], bifurcation_values(grazings), known[:, 2:]]))
     for ends, keeps in zip(pairwise([left, *grazings, right]), far.T, strict=True):
         if length_between(*ends) > _NARROWEST_PIECE:
@@ -101,7 +101,7 @@ def special_points(
 
 
 def _far_from_zero(values: np.ndarray) -> np.ndarray:
-    """Return whether functions keep their sign between points, as they are far from 0 there.
+    """Return whether functions are so far from 0 that they keep their sign between two points.
 
     Parameters
     ----------

@@ -41,7 +41,7 @@ _MARGIN = 0.25
 _AROUND = 2  # points on each side of a piece that help to locate roots in it
 
 
-def suspects(points: Sequence[Point], multipliers: np.ndarray) -> list[tuple[int, list[Test]]]:
+def suspects(points: Sequence[Point], bifurcating: np.ndarray) -> list[tuple[int, list[Test]]]:
     """Return every i such that a special point may lie between points i and i + 1, with its tests.
 
     A piece of the branch is suspect if a test function changes sign in it. It is also suspect if a
@@ -53,11 +53,11 @@ def suspects(points: Sequence[Point], multipliers: np.ndarray) -> list[tuple[int
     Parameters
     ----------
     points : sequence of Point, length n
-    multipliers : ndarray, shape (4, n)
-        As of `bifurcation_values`.
+    bifurcating : ndarray, shape (4, n)
+        The values of `bifurcation_values` at the points.
     """
     events = _of_track(points) if isinstance(points, Track) else _of_points(points)
-    parts = [multipliers, *(extrema.heights for extrema in events.extrema), events.velocities]
+    parts = [bifurcating, *(extrema.heights for extrema in events.extrema), events.velocities]
     functions = np.concatenate(parts)
     grazing = [slice(*ends) for ends in pairwise(np.cumsum([len(part) for part in parts[:-1]]))]
     passes = events.beyond[:, 1:] != events.beyond[:, :-1]
@@ -72,7 +72,7 @@ def suspects(points: Sequence[Point], multipliers: np.ndarray) -> list[tuple[int
         nearby = np.fmax(np.fmax(size[:, :-2], size[:, 2:]), size[:, 1:-1])
         near = np.fmin(np.abs(left), np.abs(right)) < _MARGIN * nearby
         goes_on = change[:, 1:] * change[:, :-1] > 0.0
-        goes_on[: len(multipliers), 1:-1] &= ~(grazes[1:] | grazes[:-1])
+        goes_on[: len(bifurcating), 1:-1] &= ~(grazes[1:] | grazes[:-1])
         near &= ~(goes_on[:, 1:] & goes_on[:, :-1])
         near |= (left * right <= 0.0) & ~np.isnan(change[:, 1:-1])
     for rows, passed in zip(grazing, passes, strict=True):

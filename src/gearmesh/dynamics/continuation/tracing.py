@@ -27,7 +27,7 @@ from gearmesh.solvers.reduced.derivatives.variational import COMPLETE
 
 MOST_CORRECTIONS = 12
 _MOST_STEPS = 64  # in one call of the compiled code
-_FEW = 128  # points that are not worth the seconds in which the code of the lanes is compiled
+_MANY = 128  # points that are worth the ten seconds in which the code of the lanes is compiled
 _UNRECORDED = np.empty(0)  # stands for the events of a motion in a lane
 
 
@@ -81,7 +81,7 @@ class Tracer:
 
     def landed(self, places: np.ndarray, normal: np.ndarray, alongs: np.ndarray) -> "Track":
         """Return the points as of `Curve.landed`."""
-        if len(places) < _FEW:
+        if len(places) < _MANY:
             rows, recorded, _ = trace(self.stated, places, normal, self.unit, MOST_CORRECTIONS)
             events = _recorded(rows, recorded)
         else:
@@ -206,14 +206,13 @@ class _Traced:
 
 def _residuals(rows: np.ndarray) -> np.ndarray:
     """Return |P^n(x) - x| of each row."""
-    residuals: np.ndarray = np.abs(rows[:, curves.END : curves.JACOBIAN] - rows[:, :SIZE]).max(
-        axis=1
-    )
+    defects = rows[:, curves.END : curves.JACOBIAN] - rows[:, :SIZE]
+    residuals: np.ndarray = np.abs(defects).max(axis=1)
     return residuals
 
 
 def _directed(rows: np.ndarray, along: np.ndarray) -> np.ndarray:
-    """Turn the tangents of rows so that they follow `along`, and return the rows."""
+    """Reverse the tangents that point against `along`, and return the rows."""
     back = (rows[:, curves.TANGENT : curves.DETERMINANT] * along).sum(axis=1) < 0.0
     rows[back, curves.TANGENT : curves.OUTCOME] *= -1.0
     return rows
@@ -234,7 +233,7 @@ class Track(Sequence[Point]):
     rows : ndarray, shape (n, POINT_SIZE)
         The columns of `gearmesh.solvers.reduced.derivatives.curves`.
     events : list of ndarray
-        Events of each motion, as far as they have been recorded.
+        Events of each motion; `_UNRECORDED` for those that were corrected in the lanes.
     """
 
     def __init__(self, tracer: Tracer, rows: np.ndarray, events: list[np.ndarray]) -> None:

@@ -177,7 +177,10 @@ def _carry_over(like, work, powers):
 
 @inner
 def _stretch(like, work, ended):
-    """Add what a longer mesh period changes at the end of a segment, where the motion goes on."""
+    """Add the effect of a longer mesh period on the state at the end of a segment.
+
+    The segment is longer too, and the motion goes on for that time.
+    """
     v, rate = load(like, work, Y + 1), load(like, work, B + 1)
     elastic = load(like, work, ELASTIC) * (load(like, work, Y) - load(like, work, OFFSET))
     slope = fma(load(like, work, CUBIC), v, load(like, work, QUADRATIC) * load(like, work, SIGN))
