@@ -4,8 +4,8 @@ The motions are those of the sweep (`gearmesh.solvers.reduced.sweep`), which is 
 them than `variational` with one. The deviations are those of `deviations`: four that belong to the
 coordinates of the state, and the derivative with respect to the logarithm of the mesh period.
 
-The series of a deviation is linear in its beginning, and follows from that of the motion. The time
-counts in steps here, so a series at the end of the step is the sum of its coefficients.
+The equations of a deviation are linear, and the motion gives their coefficients. Time is measured
+in steps here, so the value of a series at the end of the step is the sum of its coefficients.
 """
 
 import numpy as np
