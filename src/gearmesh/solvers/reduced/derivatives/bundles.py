@@ -4,8 +4,10 @@ The motions are those of the sweep (`gearmesh.solvers.reduced.sweep`), which is 
 them than `variational` with one. The deviations are those of `deviations`: four that belong to the
 coordinates of the state, and the derivative with respect to the logarithm of the mesh period.
 
-The equations of a deviation are linear, and the motion gives their coefficients. Time is measured
-in steps here, so the value of a series at the end of the step is the sum of its coefficients.
+The equations of a deviation are linear, and the motion gives their coefficients. So one matrix, the
+propagator of the step, moves all deviations to the end of the step. Its columns are the deviations
+that are 1 in one coordinate at the start and 0 in the others. Time is measured in steps here, so
+the value of a series at the end of the step is the sum of its coefficients.
 """
 
 import numpy as np
@@ -57,23 +59,18 @@ APART = N_ROWS
 DAMPING = APART + SIZE * DEVIATIONS
 """Row of the integral of the slope D of the damping law."""
 
-_HERE = DAMPING + 1  # the deviation that is being moved
-(
-    _SLOPES,  # the series of D
-    _KNOWN,  # the series of dv
-    # Factors in the recurrence for the coefficients of degree k + 1.
-    _STIFFNESS,  # of dy: (g - 1 - 2 mu) c
-    _RECOIL_STIFFNESS,  # -2 mu c
-    _SUPPORT,  # of db: -w^2
-    _BEARING_DAMPED,  # of db': -2 zeta w
-    _DAMPED,  # of the force of damping: -1 - 2 mu
-    _RECOIL_DAMPED,  # -2 mu
-    _OWN,  # the same times the first coefficient of D
-    _RECOIL_OWN,
-    _STEPS,  # of dv and db': 1
-    ALL_ROWS,
-) = range(_HERE + SIZE, _HERE + SIZE + 12 * ORDER, ORDER)
-"""First rows of ORDER rows each; the last is the number of rows of the workspace."""
+_PROPAGATOR = DAMPING + 1  # by rows: the ends of dy for unit dy, dv, db and db', then those of dv
+
+_SIDE_BY_SIDE = 2
+"""Columns of the propagator that are expanded at once. One waits for its own results, four need
+more registers than a processor has."""
+
+_COLUMNS = _PROPAGATOR + SIZE * SIZE  # the columns that are being expanded, by rows
+_KNOWN = _COLUMNS + SIZE * _SIDE_BY_SIDE  # the series of dv in these columns
+_SLOPES = _KNOWN + ORDER * _SIDE_BY_SIDE  # the series of D
+_PARTS = _SLOPES + ORDER  # the step divided by 1, 2, 3, ...
+ALL_ROWS = _PARTS + ORDER
+"""Number of rows of the workspace."""
 
 
 def _slopes(rows, powers, step):
@@ -97,55 +94,54 @@ def _slopes(rows, powers, step):
 
 
 def _prepare(rows, powers):
-    """Write the series of D and the coefficients of the recurrence, and add the integral of D."""
-    step, recoil = rows[TAKEN], -rows[TWO_MU]
-    slopes, integral = _slopes(rows, powers, step), rows[DAMPING]
-    for k, slope in enumerate(slopes):
+    """Write the series of D and the parts of the step, and add the integral of D."""
+    step, integral = rows[TAKEN], rows[DAMPING]
+    for k in range(ORDER):
+        rows[_PARTS + k] = step * (1.0 / (k + 1.0))
+    for k, slope in enumerate(_slopes(rows, powers, step)):
         integral = slope.times_plus(step * (1.0 / (k + 1.0)), integral)
         rows[_SLOPES + k] = slope
     rows[DAMPING] = integral
-    share = recoil - 1.0
-    elastic = rows[ELASTIC] * step
-    factors = {
-        _STIFFNESS: (rows[FRICTION] + share) * elastic,
-        _RECOIL_STIFFNESS: recoil * elastic,
-        _SUPPORT: -rows[BEARING_STIFFNESS] * step,
-        _BEARING_DAMPED: -rows[BEARING_DAMPING] * step,
-        _DAMPED: share * step,
-        _RECOIL_DAMPED: recoil * step,
-        _OWN: share * step * slopes[0],
-        _RECOIL_OWN: recoil * step * slopes[0],
-        _STEPS: step,
-    }
-    for row, factor in factors.items():
-        for k in range(ORDER):
-            rows[row + k] = factor * (1.0 / (k + 1.0))
 
 
 def _carry(rows, nonlinear):
-    """Move one deviation to the end of the step.
+    """Move some columns of the propagator to the end of the step."""
+    n = _SIDE_BY_SIDE
 
-    From dv_k to dv_k+1 takes one multiply-add; the processor does all other work meanwhile.
-    """
-    y, v, b, rate = ends = [rows[_HERE + i] for i in range(SIZE)]
+    def repeated(row):
+        return rows[row].repeated(n)
+
+    elastic, recoil, slope = repeated(ELASTIC), -repeated(TWO_MU), repeated(_SLOPES)
+    support, damped = -repeated(BEARING_STIFFNESS), -repeated(BEARING_DAMPING)
+    friction, share = repeated(FRICTION) * elastic, recoil - 1.0
+    y, v, b, rate = ends = [rows.several(_COLUMNS + i * n, n) for i in range(SIZE)]
     for k in range(ORDER):
-        rows[_KNOWN + k] = v
-        bearing = rows[_BEARING_DAMPED + k].times_plus(rate, rows[_SUPPORT + k] * b)
-        v_known = rows[_STIFFNESS + k].times_plus(y, bearing)
-        rate_known = rows[_RECOIL_STIFFNESS + k].times_plus(y, bearing)
-        if nonlinear and k > 0:
-            force = rows[_SLOPES + k] * rows[_KNOWN]
-            for i in range(k - 1, 0, -1):
-                force = rows[_SLOPES + i].times_plus(rows[_KNOWN + k - i], force)
-            v_known = rows[_DAMPED + k].times_plus(force, v_known)
-            rate_known = rows[_RECOIL_DAMPED + k].times_plus(force, rate_known)
-        y, b = rows[_STEPS + k] * v, rows[_STEPS + k] * rate
-        rate = rows[_RECOIL_OWN + k].times_plus(v, rate_known)
-        v = rows[_OWN + k].times_plus(v, v_known)
+        rows[_KNOWN + k * n] = v
+        normal = elastic * y
+        for i in range(k if nonlinear else 0, 0, -1):
+            normal = repeated(_SLOPES + i).times_plus(rows.several(_KNOWN + (k - i) * n, n), normal)
+        normal = slope.times_plus(v, normal)
+        bearing = damped.times_plus(rate, support * b)
+        v_change = share.times_plus(normal, friction.times_plus(y, bearing))
+        rate_change = recoil.times_plus(normal, bearing)
+        part = repeated(_PARTS + k)
+        y, v, b, rate = (part * change for change in (v, v_change, rate, rate_change))
         ends = [end + one for end, one in zip(ends, (y, v, b, rate), strict=True)]
         rows.settle()
     for i, end in enumerate(ends):
-        rows[_HERE + i] = end
+        rows[_COLUMNS + i * n] = end
+
+
+def _propagate(rows):
+    """Move all deviations to the end of the step."""
+    propagator = [[rows[_PROPAGATOR + i * SIZE + j] for j in range(SIZE)] for i in range(SIZE)]
+    for k in range(APART, APART + DEVIATIONS):
+        before = [rows[k + i * DEVIATIONS] for i in range(SIZE)]
+        for i, factors in enumerate(propagator):
+            after = factors[0] * before[0]
+            for factor, one in zip(factors[1:], before[1:], strict=True):
+                after = factor.times_plus(one, after)
+            rows[k + i * DEVIATIONS] = after
 
 
 _prepare_linear = unrolled(lambda rows: _prepare(rows, 1))
@@ -153,6 +149,7 @@ _prepare_quadratic = unrolled(lambda rows: _prepare(rows, 2))
 _prepare_cubic = unrolled(lambda rows: _prepare(rows, 3))
 _carry_linear = unrolled(lambda rows: _carry(rows, False))
 _carry_nonlinear = unrolled(lambda rows: _carry(rows, True))
+_move = unrolled(_propagate)
 
 
 @inner(inline="never")
@@ -164,15 +161,20 @@ def _carry_over(like, work, powers):
         _prepare_quadratic(like, work)
     else:
         _prepare_cubic(like, work)
-    for i in range(APART, APART + DEVIATIONS):
-        for j in range(SIZE):
-            store(work, _HERE + j, load(like, work, i + j * DEVIATIONS))
+    for first in range(0, SIZE, _SIDE_BY_SIDE):
+        for i in range(SIZE):
+            for j in range(_SIDE_BY_SIDE):
+                unit = spread(like, 1.0 if i == first + j else 0.0)
+                store(work, _COLUMNS + i * _SIDE_BY_SIDE + j, unit)
         if powers == 1:
             _carry_linear(like, work)
         else:
             _carry_nonlinear(like, work)
-        for j in range(SIZE):
-            store(work, i + j * DEVIATIONS, load(like, work, _HERE + j))
+        for i in range(SIZE):
+            for j in range(_SIDE_BY_SIDE):
+                end = load(like, work, _COLUMNS + i * _SIDE_BY_SIDE + j)
+                store(work, _PROPAGATOR + i * SIZE + first + j, end)
+    _move(like, work)
 
 
 @inner
