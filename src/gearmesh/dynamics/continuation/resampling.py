@@ -2,7 +2,6 @@
 
 from collections.abc import Sequence
 from functools import cache
-from itertools import pairwise
 
 import numpy as np
 
@@ -40,15 +39,15 @@ def resampled(pieces: list[Piece], values: np.ndarray, closed: bool) -> list[Pie
     NoOrbit
         If Newton's method does not converge.
     """
+    parts = [(piece.curve, _passages(piece, values)) for piece in pieces]
+    end = pieces[-1].points[-1:]
+    if not closed and end[0].values[0] in values:
+        parts.append((pieces[-1].curve, end))
     found: list[Piece] = []
-    for piece in pieces:
-        points = _passages(piece, values)
-        last = piece is pieces[-1] and not closed
-        if last and piece.points[-1].values[0] in values:
-            points = chained(points, piece.points[-1:])
+    for curve, points in parts:
         if points:
             before = found[-1].points[-1:] if found else []
-            found.append(Piece(piece.curve, chained(before, points)))
+            found.append(Piece(curve, chained(before, points)))
     return found
 
 
@@ -58,17 +57,15 @@ def _passages(piece: Piece, values: np.ndarray) -> Sequence[Point]:
     places, tangents = geometry(points)
     steep = np.abs(tangents[:, -1]) > _STEADY
     steady = steep[1:] & steep[:-1] & (tangents[1:, -1] * tangents[:-1, -1] > 0.0)
-    passed = [_from_to(values, *ends) for ends in pairwise(first_values(points).tolist())]
-    counts = np.where(steady, [len(one) for one in passed], 0)
-    intervals = np.repeat(np.arange(len(counts)), counts)
-    wanted = np.concatenate([values[:0], *(passed[i] for i in np.flatnonzero(counts))])
+    intervals, wanted = _passed(values, first_values(points), steady)
     landed, strayed = _landed(curve, places, tangents, steady, intervals, wanted)
     steady[strayed] = False
-    found, first, ends = landed[:0], 0, np.cumsum(counts).tolist()
+    found, first = landed[:0], 0
     for i in np.flatnonzero(~steady).tolist():
-        found = chained(found, landed[first : ends[i] - counts[i]])
+        begin, end = np.searchsorted(intervals, [i, i + 1]).tolist()
+        found = chained(found, landed[first:begin])
         found = chained(found, _searched(curve, points[i], points[i + 1], values))
-        first = ends[i]
+        first = end
     return chained(found, landed[first:])
 
 
@@ -94,11 +91,31 @@ def _landed(
     return landed, np.unique(intervals[~(moved <= ASTRAY * lengths[intervals])])
 
 
-def _from_to(values: np.ndarray, start: float, end: float) -> np.ndarray:
-    """Return the values on the way from `start` to `end`, which does not count itself."""
-    if start < end:
-        return values[(values >= start) & (values < end)]
-    return values[(values <= start) & (values > end)][::-1]
+def _passed(
+    values: np.ndarray, along: np.ndarray, steady: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
+    """Return the values that steady intervals pass, and the interval of each, in their order.
+
+    Parameters
+    ----------
+    values : ndarray, shape (m,)
+        In rising order.
+    along : ndarray, shape (n,)
+        The parameter at the ends of the intervals. The last end of an interval is not in it.
+    steady : ndarray of bool, shape (n - 1,)
+
+    Returns
+    -------
+    intervals, wanted : ndarray, shape (k,)
+    """
+    left, right = (np.searchsorted(values, along, side) for side in ("left", "right"))
+    rises = along[1:] > along[:-1]
+    begins, ends = np.where(rises, left[:-1], right[1:]), np.where(rises, left[1:], right[:-1])
+    counts = np.where(steady, ends - begins, 0)
+    intervals = np.repeat(np.arange(len(counts)), counts)
+    since = np.arange(len(intervals)) - (np.cumsum(counts) - counts)[intervals]
+    places = np.where(rises[intervals], begins[intervals] + since, ends[intervals] - 1 - since)
+    return intervals, values[places]
 
 
 def _predicted(
@@ -135,7 +152,7 @@ def _predicted(
     many = surrounded[intervals]
     for side, which in ((1, ~many), (_SIDE, many)):
         used, each = np.unique(intervals[which], return_inverse=True)
-        nodes = used[:, None] + np.arange(1 - side, side + 1)
+        nodes = used + np.arange(1 - side, side + 1)[:, None]
         found[which] = _interpolated(places[nodes], rates[nodes], each, wanted[which])
     return found
 
@@ -147,7 +164,7 @@ def _interpolated(
 
     Parameters
     ----------
-    places, rates : ndarray, shape (p, n, k)
+    places, rates : ndarray, shape (n, p, k)
         n places for each polynomial, and their derivatives with respect to the last coordinate.
     each : ndarray of int, shape (m,)
         The polynomial of each value.
@@ -158,17 +175,17 @@ def _interpolated(
     -------
     ndarray, shape (m, k)
     """
-    nodes = np.repeat(places[..., -1], 2, axis=1)
-    factors = np.repeat(places, 2, axis=1)
-    changes = np.diff(places, axis=1) / np.diff(places[..., -1:], axis=1)
-    factors[:, 2::2], factors[:, 1::2] = changes, rates
-    for order in range(2, nodes.shape[1]):
-        apart = nodes[:, order:] - nodes[:, :-order]
-        factors[:, order:] = np.diff(factors[:, order - 1 :], axis=1) / apart[..., None]
-    away = at[:, None] - nodes[each]
-    found = factors[each, -1]
-    for i in range(nodes.shape[1] - 2, -1, -1):
-        found = found * away[:, i : i + 1] + factors[each, i]
+    nodes = np.repeat(places[..., -1], 2, axis=0)
+    factors = np.repeat(places, 2, axis=0)
+    changes = np.diff(places, axis=0) / np.diff(places[..., -1:], axis=0)
+    factors[2::2], factors[1::2] = changes, rates
+    for order in range(2, len(nodes)):
+        apart = nodes[order:] - nodes[:-order]
+        factors[order:] = np.diff(factors[order - 1 :], axis=0) / apart[..., None]
+    found = factors[-1, each]
+    for i in range(len(nodes) - 2, -1, -1):
+        found *= (at - nodes[i, each])[:, None]
+        found += factors[i, each]
     found[:, -1] = at
     return found
 
