@@ -178,7 +178,7 @@ CASES = {
 @pytest.mark.parametrize("name", CASES)
 def test_agrees_with_dop853(name):
     case = replace(CASES[name], revolutions=2, kept_revolutions=2)
-    course = integrate_independently(case, PERIODS, 1e-12, 24)
+    course = integrate_independently(case, PERIODS)
     response = integrate(case, 1e-12, estimate_errors=False)
     assert response.status == "ok"
     found = np.stack([response.strobe_y, response.strobe_v], axis=1)[: PERIODS + 1]
@@ -197,7 +197,7 @@ def test_agrees_with_dop853(name):
 
 def test_bearings_have_the_forces_of_dop853_along_the_mesh_line_and_across_it():
     case = replace(CASES["two wheels, contact loss"], revolutions=2, kept_revolutions=1)
-    course = integrate_independently(case, case.teeth, 1e-12, 24)
+    course = integrate_independently(case, case.teeth)
     response = integrate(case, 1e-12, 8, estimate_errors=False)
     found = response.samples
     forces = (

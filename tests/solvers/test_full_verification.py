@@ -43,7 +43,7 @@ def courses():
     def course(name):
         if name not in made:
             case = replace(CASES[name], revolutions=2)
-            made[name] = integrate_independently(case, rtol=1e-12, steps_per_period=24)
+            made[name] = integrate_independently(case)
         return made[name]
 
     return course
