@@ -7,11 +7,9 @@ import numpy as np
 
 from gearmesh.dynamics.continuation.curves import ASTRAY, Curve
 from gearmesh.dynamics.continuation.points import Point
-from gearmesh.dynamics.continuation.test_functions import Test
 from gearmesh.dynamics.continuation.tracing import chained, first_values, geometry
 from gearmesh.dynamics.continuation.walks import Piece
-from gearmesh.dynamics.continuation.zeros import length_between, zeros
-from gearmesh.errors import NoOrbit
+from gearmesh.dynamics.continuation.zeros import length_between, passages
 
 _SIDE = 3  # points on each side of an orbit from which it is predicted
 _STEADY = 0.02  # least slope of the parameter at points from which orbits are predicted
@@ -196,20 +194,6 @@ def _searched(curve: Curve, left: Point, right: Point, values: np.ndarray) -> li
     ends, beside = (left.values[0], right.values[0]), cache(curve.beside)
     found = [left] if left.values[0] in values else []
     for value in values[(values > min(ends) - reach) & (values < max(ends) + reach)].tolist():
-
-        def away(point: Point, value: float = value) -> float:
-            return point.values[0] - value
-
-        passages = () if value in ends else zeros(curve, left, right, Test("passage", away), beside)
-        found += [_moved(curve, point, value) for _, point, _ in passages]
+        if value not in ends:
+            found += passages(curve, left, right, value, beside)
     return sorted(found, key=lambda point: float(left.tangent @ point.place))
-
-
-def _moved(curve: Curve, point: Point, value: float) -> Point:
-    """Return a point of a curve, moved by a rounding error to a value of the parameter."""
-    place, up = point.place.copy(), np.zeros(len(point.place))
-    place[-1], up[-1] = value / curve.units[0], 1.0
-    try:
-        return curve.point(place, up, point.tangent)
-    except NoOrbit:  # at a fold itself
-        return point

@@ -11,6 +11,7 @@ from gearmesh.dynamics.continuation.curves import Curve
 from gearmesh.dynamics.continuation.points import Point
 from gearmesh.dynamics.continuation.test_functions import flip_test
 from gearmesh.dynamics.continuation.tracing import backwards, chained, first_values
+from gearmesh.dynamics.continuation.zeros import passages
 from gearmesh.dynamics.periodic.shots import Motion, Shot
 from gearmesh.errors import NoOrbit
 from gearmesh.solvers.reduced.derivatives.curves import FARTHEST, is_clear
@@ -172,7 +173,10 @@ def _up_to_end(
             if back is not None:
                 return chained(ahead[:i], curve.track(back)), CLOSED
     if outside is not None:
-        end = _at_limit(curve, ahead[-1] if ahead else point, outside, limits)
+        try:
+            end = _at_limit(curve, ahead[-1] if ahead else point, outside, limits)
+        except NoOrbit as error:
+            return ahead, f"the branch ends: {error}"
         ahead = chained(ahead, end)
     return ahead, reason
 
@@ -187,7 +191,8 @@ def _at_limit(curve: Curve, point: Point, outside: Point, limits: Limits) -> Seq
         if not low <= outside.values[i] <= high:
             edge = low if outside.values[i] < low else high
             if abs(edge - point.values[i]) > _AT_LIMIT * curve.units[i]:
-                return curve.track(_between(curve, point, outside, edge, i))
+                found = next(passages(curve, point, outside, edge, curve.beside, i), None)
+                return curve.track(found) if found else []
             break
     return []
 
@@ -233,15 +238,6 @@ def _flip_at_end(curve: Curve, point: Point) -> list[tuple[str, Point]]:
     return []
 
 
-def _between(curve: Curve, point: Point, following: Point, value: float, i: int = 0) -> Point:
-    """Return the point between two others at a value of parameter `i`."""
-    share = (value - point.values[i]) / (following.values[i] - point.values[i])
-    place = point.place + share * (following.place - point.place)
-    k = len(place) - len(curve.units)
-    place[k + i] = value / curve.units[i]
-    return curve.point(place, np.eye(len(place))[k + i], following.tangent)
-
-
 def _back(curve: Curve, point: Point, following: Point, start: Point) -> Point | None:
     """Return the point at which a branch closes, if it does so between `point` and `following`.
 
@@ -250,7 +246,12 @@ def _back(curve: Curve, point: Point, following: Point, start: Point) -> Point |
     level = following.values[0] == point.values[0]
     if level or not following.slope * start.slope > 0.0:
         return None
-    found = _between(curve, point, following, start.values[0])
+    try:
+        found = next(passages(curve, point, following, start.values[0], curve.beside), None)
+    except NoOrbit:
+        found = None
+    if found is None:
+        return None
     if np.abs(found.place - start.place).max() < _SAME:
         return start
     here = found.orbit

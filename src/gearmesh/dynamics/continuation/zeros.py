@@ -68,6 +68,29 @@ def zeros(
             pieces += [(start, middle), (middle, end)]
 
 
+def passages(
+    curve: Curve, left: Point, right: Point, value: float, beside: Beside, i: int = 0
+) -> Iterator[Point]:
+    """Yield the points between two others at a value of parameter `i`, which may turn there."""
+
+    def away(point: Point) -> float:
+        return point.values[i] - value
+
+    for _, point, _ in zeros(curve, left, right, Test("passage", away), beside):
+        yield _moved(curve, point, value, i)
+
+
+def _moved(curve: Curve, point: Point, value: float, i: int) -> Point:
+    """Return a point of a curve, moved by a rounding error to a value of parameter `i`."""
+    place, normal = point.place.copy(), np.zeros(len(point.place))
+    axis = len(place) - len(curve.units) + i
+    place[axis], normal[axis] = value / curve.units[i], 1.0
+    try:
+        return curve.point(place, normal, point.tangent)
+    except NoOrbit:  # at a fold itself
+        return point
+
+
 def length_between(left: Point, right: Point) -> float:
     """Return the length of a piece of a branch."""
     return float(left.tangent @ (right.place - left.place))
