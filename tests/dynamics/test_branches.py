@@ -176,27 +176,30 @@ def test_a_start_outside_the_range_is_said():
     assert CLOSED not in follow(orbit, "nu", (0.69, 0.71)).ends
 
 
-@pytest.mark.parametrize(
-    ("name", "nu", "state", "periods", "kinds"),
-    [
-        (
-            "d-lubricant",
-            0.785,
-            [1.5657076, 0.483173535, -1.99885662, 9.83725519e-04],
-            4,
-            {"fold": 2, "grazing_front": 4},
-        ),
-        (
-            "c-lubricant",
-            0.635,
-            [2.02224615, -0.633408858, -1.99688967, -1.22484934e-03],
-            6,
-            {"fold": 2, "grazing_front": 6},
-        ),
-    ],
-)
+ISOLAS = [
+    (
+        "d-lubricant",
+        0.785,
+        [1.5657076, 0.483173535, -1.99885662, 9.83725519e-04],
+        4,
+        {"fold": 2, "grazing_front": 4},
+    ),
+    (
+        "c-lubricant",
+        0.635,
+        [2.02224615, -0.633408858, -1.99688967, -1.22484934e-03],
+        6,
+        {"fold": 2, "grazing_front": 6},
+    ),
+]
+"""Variant, nu_s, a state, number of periods, and how many special points there are of each kind.
+
+The isola of d-lubricant has another orbit 5e-4 away; that of c-lubricant grazes in pairs.
+"""
+
+
+@pytest.mark.parametrize(("name", "nu", "state", "periods", "kinds"), ISOLAS)
 def test_an_isola_is_the_same_from_each_of_its_mesh_periods(name, nu, state, periods, kinds):
-    """The isola of d-lubricant has another orbit 5e-4 away; that of c-lubricant grazes in pairs."""
     orbit = correct(gm.paper().problem(variant(name), nu), np.array(state), periods)
     found, heights = [], []
     for start in orbit.points:
@@ -213,3 +216,29 @@ def test_an_isola_is_the_same_from_each_of_its_mesh_periods(name, nu, state, per
     for other in heights:
         assert len(other) == 40
         np.testing.assert_allclose(other, heights[0], atol=1e-8, rtol=0)
+
+
+@pytest.mark.parametrize(("name", "nu", "state", "periods", "kinds"), ISOLAS)
+def test_an_isola_is_the_same_from_each_of_its_special_points(name, nu, state, periods, kinds):
+    """At a fold nu does not fix the orbit, and is not passed a second time."""
+    orbit = correct(gm.paper().problem(variant(name), nu), np.array(state), periods)
+    branch = follow(orbit, "nu", (0.6, 1.2))
+    expected = sorted((point.kind, point.nu) for point in branch.special)
+    for begun in branch.special:
+        other = follow(begun.orbit, "nu", (0.6, 1.2))
+        assert other.ends == (CLOSED, CLOSED)
+        assert other.values[0] == other.values[-1]
+        found = sorted((point.kind, point.nu) for point in other.special)
+        assert [kind for kind, _ in found] == [kind for kind, _ in expected]
+        assert [at for _, at in found] == pytest.approx([at for _, at in expected], abs=1e-10)
+
+
+def test_an_open_branch_is_the_same_from_each_of_its_special_points(lubricant):
+    assert len({point.kind for point in lubricant.special}) == 4
+    for begun in lubricant.special:
+        other = follow(begun.orbit, "nu", (0.6, 1.2))
+        assert other.ends == (LIMIT, LIMIT)
+        kinds = [point.kind for point in lubricant.special]
+        assert [point.kind for point in other.special] == kinds
+        places = [point.nu for point in lubricant.special]
+        assert [point.nu for point in other.special] == pytest.approx(places, abs=1e-10)

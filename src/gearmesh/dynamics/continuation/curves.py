@@ -154,10 +154,13 @@ class Curve:
 
     def beside(self, point: Point, length: float) -> Point:
         """Return the point at a small distance along the tangent, where the curve still is."""
+        return self._there(point.place + length * point.tangent, point.tangent)
+
+    def _there(self, place: np.ndarray, along: np.ndarray) -> Point:
+        """Return the point at a place of the curve, without any correction."""
         if self.tracer is not None:
-            return self.tracer.beside(point, length)
-        place = point.place + length * point.tangent
-        return self._with_tangent(place, self._orbit(place), point.tangent)
+            return self.tracer.there(place, along)
+        return self._with_tangent(place, self._orbit(place), along)
 
     def _with_tangent(self, place: np.ndarray, orbit: Shot, along: np.ndarray) -> Point:
         gradients = self._gradients(place, orbit)
@@ -174,7 +177,12 @@ class Curve:
         """
         up = np.zeros(orbit.state.size + len(values))
         up[orbit.state.size] = 1.0
-        return self.point(np.append(orbit.state, np.divide(values, self.units)), up, up)
+        place = np.append(orbit.state, np.divide(values, self.units))
+        try:
+            return self.point(place, up, up)
+        except NoOrbit:  # a fold, where the parameter does not tell one orbit from the next
+            along = self._there(place, up).tangent
+            return self.point(place, along, along)
 
     def moved_to(self, phase: float, point: Point) -> tuple["Curve", Point]:
         """Return the curve with its state taken at another phase, and a point on it."""

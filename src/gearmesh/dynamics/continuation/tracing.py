@@ -63,10 +63,9 @@ class Tracer:
         """Return the point as of `Curve.point`."""
         return self._landed(place, normal, along, MOST_CORRECTIONS)
 
-    def beside(self, point: Point, length: float) -> Point:
-        """Return the point as of `Curve.beside`."""
-        along = point.tangent
-        return self._landed(point.place + length * along, along, along, 0)
+    def there(self, place: np.ndarray, along: np.ndarray) -> Point:
+        """Return the point at a place, without any correction."""
+        return self._landed(place, along, along, 0)
 
     def _landed(
         self, place: np.ndarray, normal: np.ndarray, along: np.ndarray, corrections: int

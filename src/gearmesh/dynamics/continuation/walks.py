@@ -1,7 +1,9 @@
 """Walks along a curve of orbits in both directions, and the reasons why they end."""
 
+import contextlib
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import cache, partial
 from itertools import pairwise
 from typing import NamedTuple
 
@@ -10,7 +12,7 @@ import numpy as np
 from gearmesh.dynamics.continuation.curves import Curve
 from gearmesh.dynamics.continuation.points import Point
 from gearmesh.dynamics.continuation.test_functions import flip_test
-from gearmesh.dynamics.continuation.tracing import backwards, chained, first_values
+from gearmesh.dynamics.continuation.tracing import backwards, chained, geometry
 from gearmesh.dynamics.continuation.zeros import passages
 from gearmesh.dynamics.periodic.shots import Motion, Shot
 from gearmesh.errors import NoOrbit
@@ -37,6 +39,7 @@ _FIRST_STEP = 0.25  # of the longest
 _AT_LIMIT = 1e-9  # share of the range of the parameter
 _SAME = 1e-7  # distance between two states that are the same
 _PLACES = 64  # of an orbit, at which its distance from the ends of regimes is taken
+_OPPOSITE = 0.9  # cosine between vectors that point away from each other
 _REACH = 0.3  # length of the branch of half the period on which its flip is searched for
 
 
@@ -108,12 +111,18 @@ def _is_clear(motion: Motion) -> bool:
 
 
 def joined(back: Walk, ahead: Walk) -> list[Piece]:
-    """Return the pieces of both walks in the direction of the second."""
+    """Return the pieces of both walks in the direction of the second.
+
+    The start of the walks is left out unless it is an end. It may be a special point, and such
+    points are searched for between others.
+    """
     if back is ahead:
         return ahead.pieces
     *pieces, last = [piece.reversed() for piece in reversed(back.pieces)]
     first, *others = ahead.pieces
-    return [*pieces, Piece(first.curve, chained(last.points[:-1], first.points)), *others]
+    inside = len(last.points) > 1 and len(first.points) > 1
+    points = chained(last.points[:-1], first.points[1:] if inside else first.points)
+    return [*pieces, Piece(first.curve, points), *others]
 
 
 def points_of(pieces: list[Piece]) -> list[Point]:
@@ -124,7 +133,7 @@ def points_of(pieces: list[Piece]) -> list[Point]:
 def _walk(curve: Curve, start: Point, limits: Limits, longest: float) -> Walk:
     """Follow the branch from `start`, along its tangent."""
     point, pieces = start, [Piece(curve, curve.track(start))]
-    length = _FIRST_STEP * longest
+    length, repeats = _FIRST_STEP * longest, None
     while sum(len(piece.points) for piece in pieces) < MOST_POINTS:
         if _leaves(curve, point, limits):
             return Walk(pieces, LIMIT, [])
@@ -138,8 +147,18 @@ def _walk(curve: Curve, start: Point, limits: Limits, longest: float) -> Walk:
         except NoOrbit as error:
             flip = _flip_at_end(curve, point)
             return Walk(pieces, HALVED if flip else f"the branch ends: {error}", flip)
-        ahead, reason = _up_to_end(curve, point, ahead, start, limits)
-        pieces[-1] = Piece(curve, chained(pieces[-1].points, ahead))
+        ahead, reason = _up_to_end(curve, point, ahead, limits)
+        points = chained(pieces[-1].points, ahead)
+        first = len(points) - len(ahead) - 1
+        if repeats is None and ahead:
+            first, repeats = first + 1, cache(partial(_repeats, ahead[0]))
+        if repeats is not None:
+            closed = _closed(curve, points, first, repeats(curve.periods, curve.phase))
+            if closed is not None:
+                pieces[-1] = Piece(curve, closed)
+                pieces[0] = Piece(pieces[0].curve, pieces[0].points[1:])
+                return Walk(pieces, CLOSED, [])
+        pieces[-1] = Piece(curve, points)
         if reason:
             flip = _flip_at_end(curve, pieces[-1].points[-1]) if reason == HALVED else []
             return Walk(pieces, reason, flip)
@@ -150,29 +169,20 @@ def _walk(curve: Curve, start: Point, limits: Limits, longest: float) -> Walk:
 
 
 def _up_to_end(
-    curve: Curve, point: Point, ahead: Sequence[Point], start: Point, limits: Limits
+    curve: Curve, point: Point, ahead: Sequence[Point], limits: Limits
 ) -> tuple[Sequence[Point], str]:
     """Return the points behind `point` up to the end of a walk, and why it ends, if it does.
 
     Only the last of the points may be outside the limits.
     """
-    reason, outside = "", None
+    reason = ""
     if _halves(curve):
         sides = [_half_way(one) for one in (point, *ahead)]
-        turned = [here @ there < 0.0 for here, there in pairwise(sides)]
+        turned = [_are_opposite(*ends) for ends in pairwise(sides)]
         if any(turned):
             ahead, reason = ahead[: turned.index(True)], HALVED
     if ahead and not _is_inside(ahead[-1], limits):
         ahead, outside, reason = ahead[:-1], ahead[-1], LIMIT
-    value = start.values[0]
-    below = [point.values[0] < value, *(first_values(ahead) < value).tolist()]
-    for i in range(len(ahead)):
-        if below[i] != below[i + 1]:
-            before = ahead[i - 1] if i else point
-            back = None if before is start else _back(curve, before, ahead[i], start)
-            if back is not None:
-                return chained(ahead[:i], curve.track(back)), CLOSED
-    if outside is not None:
         try:
             end = _at_limit(curve, ahead[-1] if ahead else point, outside, limits)
         except NoOrbit as error:
@@ -218,6 +228,11 @@ def _half_way(point: Point) -> np.ndarray:
     return orbit.shot(orbit.problem, orbit.state, orbit.periods // 2).defect
 
 
+def _are_opposite(one: np.ndarray, other: np.ndarray) -> bool:
+    """Return whether two vectors point in opposite directions; at a grazing they may only turn."""
+    return bool(one @ other < -_OPPOSITE * np.linalg.norm(one) * np.linalg.norm(other))
+
+
 def _flip_at_end(curve: Curve, point: Point) -> list[tuple[str, Point]]:
     """Return the flip of an orbit of half the period near a point, if there is one."""
     from scipy.optimize import brentq  # here, because it takes long to import
@@ -238,27 +253,43 @@ def _flip_at_end(curve: Curve, point: Point) -> list[tuple[str, Point]]:
     return []
 
 
-def _back(curve: Curve, point: Point, following: Point, start: Point) -> Point | None:
-    """Return the point at which a branch closes, if it does so between `point` and `following`.
+def _repeats(point: Point, periods: int, phase: float) -> np.ndarray:
+    """Return the places of an orbit at a phase of each of its mesh periods, shape (n, k + m)."""
+    orbit = point.orbit.at_phase(phase)
+    states, step = [orbit.state], orbit.repeats_after
+    for _ in range(step, periods, step):
+        states.append(states[-1] + orbit.shot(orbit.problem, states[-1], step).defect)
+    values = point.place[orbit.state.size :]
+    return np.array([np.append(state, values) for state in states])
 
-    This is where it meets the orbit of `start` again.
+
+def _closed(
+    curve: Curve, points: Sequence[Point], first: int, repeats: np.ndarray
+) -> Sequence[Point] | None:
+    """Return the points up to where the curve meets an orbit again, or None if it does not.
+
+    Parameters
+    ----------
+    points : sequence of Point
+        Successive points of the curve.
+    first : int
+        The point from which on the orbit is looked for. It may be this orbit itself.
+    repeats : ndarray, shape (n, k + m)
+        Places of the orbit.
     """
-    level = following.values[0] == point.values[0]
-    if level or not following.slope * start.slope > 0.0:
+    places, tangents = geometry(points[first:])
+    if len(places) < 2:
         return None
-    try:
-        found = next(passages(curve, point, following, start.values[0], curve.beside), None)
-    except NoOrbit:
-        found = None
-    if found is None:
-        return None
-    if np.abs(found.place - start.place).max() < _SAME:
-        return start
-    here = found.orbit
-    state = here.at_phase(start.orbit.problem.initial_phase).state
-    for _ in range(curve.periods // here.repeats_after):
-        if np.abs(state - start.orbit.state).max() < _SAME:
-            return found
-        shot = here.shot(start.orbit.problem, state, here.repeats_after)
-        state = state + shot.defect
+    apart, away = np.diff(places, axis=0)[:, None], repeats - places[:-1, None]
+    lengths = np.sum(tangents[:-1, None] * apart, axis=2)
+    along = np.sum(tangents[:-1, None] * away, axis=2)
+    off = np.linalg.norm(away - along[..., None] / lengths[..., None] * apart, axis=2)
+    near = (along > _SAME) & (along < lengths + 2.0 * _SAME) & (off < lengths)
+    for i, j in np.argwhere(near).tolist():
+        left, right = points[first + i], points[first + i + 1]
+        with contextlib.suppress(NoOrbit):
+            there = curve.between(left, right, left.tangent, along[i, j] / lengths[i, 0])
+            if np.abs(there.place - repeats[j]).max() < _SAME:
+                back = curve.point(repeats[j], left.tangent, left.tangent)
+                return chained(points[: first + i + 1], curve.track(back))
     return None
