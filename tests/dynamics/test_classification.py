@@ -10,7 +10,8 @@ from gearmesh.dynamics.attraction.classification import SETTLED, classify
 from gearmesh.dynamics.attraction.envelopes import envelope_of
 from gearmesh.dynamics.attraction.kinds import CHAOTIC, LOST, MOVING, NEUTRAL, PERIODIC
 from gearmesh.dynamics.periodic.orbits import find_orbit
-from gearmesh.dynamics.starts import initial_coordinates
+from gearmesh.dynamics.starts import initial_coordinates, linear_orbit
+from gearmesh.model.problem import State
 from gearmesh.solvers.reduced.derivatives.period_map import passage
 from gearmesh.solvers.reduced.derivatives.variational import REGIME, TIME
 from gearmesh.solvers.simulation import simulate
@@ -93,3 +94,12 @@ def test_cases_do_not_depend_on_each_other(found):
     for name, one in zip(list(CASES)[::-1], classify(list(CASES.values())[::-1]), strict=True):
         assert one.attractor.label == found[name].attractor.label
         assert one.settled == found[name].settled
+
+
+def test_a_run_that_is_in_contact_from_the_start_waits_for_no_other(found):
+    """Its last loss of contact is searched for together with that of runs that take longer."""
+    losing = CASES["in contact at last"]
+    contact = replace(losing, initial_state=State(*linear_orbit(losing).tolist()))
+    (alone,), both = classify([contact]), classify([contact, losing])
+    assert alone.settled == both[0].settled == 0
+    assert both[1].settled == found["in contact at last"].settled > 0

@@ -52,15 +52,6 @@ def test_the_step_of_a_jump_stays_and_that_of_a_slope_shrinks(place, height, slo
     assert step == pytest.approx(height * (high - low), rel=1e-6)
 
 
-def test_a_step_beside_missing_values_is_still_found():
-    def values(nu):
-        return np.where(nu > 0.9, np.nan, np.where(nu > 0.7, 2.0, 1.0))
-
-    low, high, step = refine_step(values, 0.6, 1.2, WIDTH)
-    assert low <= 0.7 <= high
-    assert step == 1.0
-
-
 @given(st.floats(0.61, 1.19))
 def test_a_peak_is_located(place):
     nu, height = refine_peak(lambda x: -np.abs(x - place), 0.6, 1.2, WIDTH)

@@ -93,3 +93,14 @@ def test_a_wrong_argument_is_one_line(pair, name):
         WRONG[name](pair)
     assert "\n" not in str(caught.value)
     assert len(str(caught.value)) < 200
+
+
+def test_motion_is_neutral_only_where_a_motion_in_contact_exists(pair):
+    """At 1.1 and 0.85 the periodic motion that contact would allow needs a pull."""
+    early = gm.attractors(pair, "c-lubricant", 1.1, revolutions=2)
+    late = gm.attractors(pair, "c-lubricant", 1.1)
+    assert early.kind.values.tolist() == ["moving"]
+    assert late.kind.values.tolist() == ["periodic"]
+    grid = {"y": np.linspace(-3.0, 4.0, 17), "v": np.linspace(-2.0, 2.0, 17)}
+    found = gm.basins(pair, "c-lubricant", 0.85, **grid)
+    assert found.kind.values.tolist() == ["periodic"]

@@ -130,6 +130,7 @@ def test_a_campbell_map_is_the_spectra_of_the_runs(pair):
     mesh = found.isel(nu=1).sel(order=1.0)
     assert float(mesh.frequency) == pytest.approx(21 * 12000 / 60, rel=1e-9)
     assert float(mesh.shaft_order) == 21.0
+    assert set(found.attrs) == {"variant", "parameters"}
 
 
 @pytest.mark.parametrize("names", [("status",), ("y", "force"), ("time",)])

@@ -7,6 +7,7 @@ import pytest
 import xarray as xr
 
 import gearmesh as gm
+from gearmesh.interface.parameters import static_deflection
 
 
 @pytest.fixture(scope="module")
@@ -279,3 +280,22 @@ def test_wrong_parameters_of_a_curve_are_one_line(orbit, names, limits):
     with pytest.raises(gm.InputError, match=r"found .*; allowed ") as caught:
         gm.follow_special(point, names, limits)
     assert "\n" not in str(caught.value)
+
+
+def test_a_curve_on_which_nothing_changes_with_a_parameter_is_not_closed(pair):
+    """In static deflections no motion depends on the torque, so nu never changes."""
+    branch = gm.follow(gm.find_orbit(pair, "c-lubricant", 0.7), "nu", (0.7, 0.9))
+    fold = next(point for point in branch.special if point.kind == "fold")
+    curve = gm.follow_special(fold, ("nu", "torque"), ((0.4, 1.4), ("30 N m", "300 N m")))
+    assert curve.found.ends == ("limit", "limit")
+    found = curve.to_dataset()
+    assert found.torque.values[[0, -1]].tolist() == [30.0, 300.0]
+    assert np.ptp(found.nu.values) < 1e-9
+    np.testing.assert_allclose((found.y_max / found.torque).values, found.y_max[0] / 30.0)
+
+
+def test_lengths_change_also_if_both_ends_have_the_static_deflection_of_the_pair(pair):
+    at_ends = np.array([[1.0], [1.1], [1.0]]) * pair.torque
+    found = static_deflection(pair, ("torque",), at_ends)
+    np.testing.assert_allclose(found, pair.static_deflection * np.array([1.0, 1.1, 1.0]))
+    assert static_deflection(pair, ("torque",), at_ends[[0, 2]]) == pair.static_deflection

@@ -139,7 +139,7 @@ def test_a_pitch_chart_is_read_as_it_was_measured(tmp_path, pair):
     [
         ("tooth,error\n1,2\n", "found tooth, error; allowed is one column F_p or f_p"),
         ("", "found no teeth"),
-        ("F_p\n1\nx\n", "line 3: found 'x'; allowed is a number"),
+        ("F_p\n1\n\nx\n", "line 4: found 'x'; allowed is a number"),
         ("tooth,F_p\n1\n", "line 2: found None"),
     ],
 )

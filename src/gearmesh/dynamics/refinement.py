@@ -84,9 +84,7 @@ def refine_step(values: Batch, low: float, high: float, width: float) -> tuple[f
     while (points := _cut(low, high, width)) is not None:
         curve = np.concatenate([[at_low], values(points[1:-1]), [at_high]])
         sizes = np.abs(np.diff(curve))
-        if np.all(np.isnan(sizes)):
-            return float(low), float(high), float("nan")
-        piece = int(np.nanargmax(sizes))
+        piece = int(np.argmax(sizes))
         low, high = points[piece], points[piece + 1]
         at_low, at_high = curve[piece], curve[piece + 1]
     return float(low), float(high), float(at_high - at_low)
@@ -102,7 +100,7 @@ def refine_peak(values: Batch, low: float, high: float, width: float) -> tuple[f
     """
     while True:
         points = _ends(low, high)
-        curve = np.nan_to_num(values(points), nan=-np.inf)
+        curve = values(points)
         best = int(np.argmax(curve))
         if _cut(low, high, width) is None:
             return float(points[best]), float(curve[best])

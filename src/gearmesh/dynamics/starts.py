@@ -1,7 +1,7 @@
 """Initial states for the search for orbits."""
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import replace
 from itertools import product
 
@@ -18,8 +18,7 @@ Values = float | np.ndarray
 _TRANSIENT = 40
 """Revolutions after which the end of a run serves as an initial state."""
 
-_HEIGHTS = (0.0, 1.0, 2.0, 3.0)
-_VELOCITIES = (-2.0, -0.7, 0.7, 2.0)
+_HEIGHTS, _VELOCITIES = (0.0, 1.0, 2.0, 3.0), (-2.0, -0.7, 0.7, 2.0)
 
 
 def starts(problem: Problem) -> Iterator[np.ndarray]:
@@ -30,13 +29,12 @@ def starts(problem: Problem) -> Iterator[np.ndarray]:
     """
     yield linear_orbit(problem)
     long = replace(problem, revolutions=_TRANSIENT, kept_revolutions=0, initial_state=None)
-    rest = -2.0 / problem.bearing_stiffness
-    grid = [State(y, v, rest, 0.0) for y, v in product(_HEIGHTS, _VELOCITIES)]
-    runs = [long, *(replace(long, initial_state=state) for state in grid)]
+    grid = initial_states(problem, _HEIGHTS, _VELOCITIES)
+    runs = [long, *(replace(long, initial_state=State(*state)) for state in grid.tolist())]
     for response in simulate(runs, estimate_errors=False):
         if response.final_state is not None:
             yield coordinates(response.final_state)
-    yield from map(coordinates, grid)
+    yield from grid
 
 
 def coordinates(state: State) -> np.ndarray:
@@ -49,7 +47,7 @@ def initial_coordinates(problem: Problem) -> np.ndarray:
     return coordinates(problem.initial_state or state_at(problem))
 
 
-def initial_states(problem: Problem, y: np.ndarray, v: np.ndarray) -> np.ndarray:
+def initial_states(problem: Problem, y: Iterable[float], v: Iterable[float]) -> np.ndarray:
     """Return the states of a grid of y and y' with the bodies in equilibrium under F_st."""
     rest = -2.0 / problem.bearing_stiffness
     return np.array([(height, rate, rest, 0.0) for height, rate in product(y, v)])

@@ -60,8 +60,9 @@ def attractors(
         Over ``attractor``: `label`; `kind` (``periodic``, ``neutral``, ``quasi-periodic``,
         ``chaotic``, ``moving`` or ``lost``); for an orbit its `periods`, `y_max`, `y_min`,
         `strobe_y`, `strobe_v` (at mesh phase 0), `signature`, `multipliers` and
-        `time_constant` (mesh periods in which a deviation falls by e); and `starts`, the number of
-        initial conditions that lead there. Lengths are in mm and, with ``_rel`` appended to the
+        `time_constant` (mesh periods in which a deviation falls by e); `exponent_rel`, the largest
+        Lyapunov exponent in Ω_s; and `starts`, the number of initial conditions that lead there.
+        Lengths are in mm and, with ``_rel`` appended to the
         name, in static deflections.
 
         A label depends on the attractor alone, and so is the same in every dataset: the period and

@@ -155,7 +155,7 @@ class Branch:
         )
         nu = found.values
         if self.parameter != "nu":
-            nu = np.array([point.orbit.problem.nu for point in found.points])
+            nu = np.full(found.values.shape, self.orbit.nu)
         for name, values, what in (
             ("nu", nu, "mesh frequency nu_s"),
             ("stable", found.stable, "whether the orbit is stable"),
@@ -233,7 +233,11 @@ class SpecialCurve:
         for name, values in zip(self.found.parameters, self.found.values.T, strict=True):
             unit, what = declared(pair, name)
             dataset[name] = ("point", values, {"units": unit, "long_name": what})
-        dataset.attrs = {"kind": self.found.kind, "variant": self.point.orbit.variant.name}
+        dataset.attrs = {
+            "kind": self.found.kind,
+            "variant": self.point.orbit.variant.name,
+            "parameters": pair.canonical(),
+        }
         return dataset
 
 

@@ -39,16 +39,18 @@ def read_pitch_chart(path: str | Path, unit: str = "um") -> list[str]:
         raise InputError(f"path: found {shown(path)}; allowed is the name of a file")
     try:
         with Path(path).open(newline="", encoding="utf-8-sig") as file:
-            rows = list(csv.DictReader(file, skipinitialspace=True))
+            table = csv.DictReader(file, skipinitialspace=True)
+            names = table.fieldnames or []
+            rows = [(table.line_num, row) for row in table]
     except (OSError, UnicodeDecodeError, csv.Error) as error:
         reason = error.strerror if isinstance(error, OSError) else "not a table in UTF-8"
         raise InputError(f"{path}: cannot be read: {reason}") from None
-    named = [name for name in _COLUMNS if rows and name in rows[0]]
+    named = [name for name in _COLUMNS if rows and name in names]
     if len(named) != 1:
-        found = ", ".join(str(name) for name in rows[0]) if rows else "no teeth"
+        found = ", ".join(names) if rows else "no teeth"
         raise InputError(f"{path}: found {found}; allowed is one column F_p or f_p")
     values = []
-    for line, row in enumerate(rows, start=2):
+    for line, row in rows:
         text = row[named[0]]
         try:
             values.append(float(text))

@@ -1,5 +1,6 @@
 """Parameters of a pair as single numbers, as sweeps vary them and branches follow them."""
 
+import itertools
 from typing import Any
 
 import numpy as np
@@ -95,7 +96,9 @@ def static_deflection(pair: Pair, names: tuple[str, ...], values: np.ndarray) ->
                 changed = with_number(changed, name, value)
         return changed.static_deflection
 
-    if all(at(row) == pair.static_deflection for row in values[[0, -1]]):
+    # y_st rises or falls with each parameter, so the ends of their ranges tell.
+    corners = itertools.product(*zip(values.min(axis=0), values.max(axis=0), strict=True))
+    if all(at(np.array(corner)) == pair.static_deflection for corner in corners):
         return pair.static_deflection
     return np.array([at(row) for row in values])
 

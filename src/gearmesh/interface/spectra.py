@@ -120,12 +120,12 @@ def campbell(
     -------
     xarray.Dataset
         The amplitudes over (nu, order), with the coordinates `speed` (rpm) and `shaft_order`, and
-        `frequency` (Hz) over both. A run that could not be integrated has not-a-number.
+        `frequency` (Hz) over both.
 
     Raises
     ------
     InputError
-        One line, if an argument is wrong.
+        One line, if an argument is wrong or a run cannot be integrated.
     """
     check_pair(pair)
     check_direction(direction)
@@ -148,6 +148,7 @@ def campbell(
         amplitudes = spectrum(run, quantity)
         rows.append(amplitudes.sel(order=slice(None, highest_order)).assign_coords(nu=one))
     found = xr.concat(rows, "nu", coords=["frequency"]).sortby("nu")
+    found.attrs = {"variant": chosen.name, "parameters": pair.canonical()}
     return _with_speeds(found, pair)
 
 

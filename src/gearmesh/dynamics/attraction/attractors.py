@@ -36,7 +36,7 @@ class Attractor:
     time_constant : float
         Mesh periods in which a deviation falls by e: -n/ln|mu| with the largest multiplier mu of
         an orbit; of neutral motion that of the periodic motion in contact, which only the bearings
-        damp. Not-a-number if there is none.
+        damp, or infinity if nothing does. Not-a-number if there is none.
     """
 
     kind: str

@@ -20,7 +20,7 @@ from gearmesh.model.problem import Problem
 TRANSIENT = 60
 """Revolutions after which a motion that has not settled is classified as it is."""
 
-_BLOCK = 20  # least mesh periods from one look at the runs to the next
+_BLOCK = 20  # least mesh periods from one check of the runs to the next
 _FIRST = 2  # blocks before the first search for orbits
 _EVERY = 3  # blocks from one search to the next
 _PILOTS = 256
@@ -71,7 +71,7 @@ def reached(problem: Problem, states: np.ndarray, transient: int = TRANSIENT) ->
 
 
 def _steps(search: Search) -> int:
-    """Return the steps of the Poincaré map from one look at the runs to the next."""
+    """Return the steps of the Poincaré map from one check of the runs to the next."""
     return math.ceil(_BLOCK / search.moved.block)
 
 
@@ -84,7 +84,7 @@ def _follow(search: Search, states: np.ndarray, blocks: int) -> tuple[np.ndarray
     for block in range(blocks + 1):
         found = search.captured(states[runs])
         if block % _EVERY == _FIRST and (found < 0).any():
-            search.look(states[runs[found < 0]])
+            search.find_orbits(states[runs[found < 0]])
             found = search.captured(states[runs])
         labels[runs] = found
         runs = runs[found < 0]

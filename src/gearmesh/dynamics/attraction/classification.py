@@ -5,6 +5,7 @@ import operator
 from collections import defaultdict
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field, replace
+from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
@@ -94,7 +95,7 @@ def _classify(problems: Sequence[Problem]) -> list[LongRun]:
     states = np.array([initial_coordinates(problem) for problem in problems])
     found: dict[int, LongRun] = {}
     open_ = list(range(len(runs)))
-    for before, after in zip((0, *CHECKED_AFTER), CHECKED_AFTER, strict=False):
+    for before, after in pairwise((0, *CHECKED_AFTER)):
         last = after == CHECKED_AFTER[-1]
         ends, strobes = trace(laws[open_], states[open_], after - before)
         begun = states[open_]
@@ -125,15 +126,11 @@ def _ending(run: _Run, end: np.ndarray, last: bool) -> LongRun | None:
     """Return where a run ends if that shows at this check."""
     if np.isnan(end[0]):
         return LongRun(Attractor(LOST), None)
+    before = run.margin
     if run.envelope:
-        margin, before = float(run.envelope.margins(end[None])[0]), run.margin
-        run.margin = margin
-        constant = run.envelope.time_constant
-        rate = -1.0 / (constant * run.problem.period)
-        if margin > 0.0:
-            return LongRun(Attractor(NEUTRAL, exponent=rate, time_constant=constant), None)
-        if last and any(run.problem.lubricant) and margin > RISE * before:
-            return LongRun(Attractor(MOVING, exponent=rate, time_constant=constant), None)
+        run.margin = float(run.envelope.margins(end[None])[0])
+        if run.margin > 0.0:
+            return LongRun(_in_contact(run, run.envelope, NEUTRAL), None)
     strobes, near = np.concatenate(run.strobes), []
     for orbit in _candidates(run, strobes, end):
         away = np.abs((orbit.points - end) * WEIGHTS).max(axis=1)
@@ -141,12 +138,20 @@ def _ending(run: _Run, end: np.ndarray, last: bool) -> LongRun | None:
             settled = _settled(strobes, orbit.points, int(away.argmin()))
             return LongRun(Attractor.of(orbit), settled, orbit)
         near += [(float(away.min()), orbit)] if away.min() < _NEAR else []
+    if last and run.envelope and any(run.problem.lubricant) and run.margin > RISE * before:
+        return LongRun(_in_contact(run, run.envelope, MOVING), None)
     if last and near:
         _, orbit = min(near, key=operator.itemgetter(0))
         slow = Attractor.of(orbit)
         moving = Attractor(MOVING, exponent=slow.exponent, time_constant=slow.time_constant)
         return LongRun(moving, None, orbit)
     return None
+
+
+def _in_contact(run: _Run, envelope: Envelope, kind: str) -> Attractor:
+    """Return the attractor of a motion whose contact losses vanish, or have vanished."""
+    constant = envelope.time_constant
+    return Attractor(kind, exponent=-1.0 / (constant * run.problem.period), time_constant=constant)
 
 
 def _candidates(run: _Run, strobes: np.ndarray, end: np.ndarray) -> Iterator[Orbit]:
@@ -184,7 +189,7 @@ def _last_loss(
     n = len(states)
     low, high = np.full(n, -1), np.full(n, periods)
     while (high - low > 1).any():
-        middle = (low + high) // 2
+        middle = (low + high + 1) // 2
         there = states.copy()
         moving = middle > 0
         there[moving] = advance(laws[moving], states[moving], middle[moving])

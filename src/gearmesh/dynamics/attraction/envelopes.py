@@ -91,10 +91,13 @@ def _envelope_of(problem: Problem) -> Envelope | None:
         return None
     heights = np.array(rows)
     centre = np.linalg.solve(np.eye(4) - moved[:4, :4], moved[:4, 4])
+    height = heights[:, :4] @ centre + heights[:, 4]
+    if height.min() <= 0.0:
+        return None
     return Envelope(
         centre,
         np.linalg.inv(vectors),
-        heights[:, :4] @ centre + heights[:, 4],
+        height,
         np.abs(heights[:, :4] @ vectors),
         -1.0 / math.log(slowest) if slowest < 1.0 else math.inf,
     )

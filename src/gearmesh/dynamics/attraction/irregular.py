@@ -54,7 +54,9 @@ def _kinds(runs: Sequence[Problem]) -> Iterator[str]:
     ]
     for run, one, two in zip(runs, first, simulate(again, estimate_errors=False), strict=True):
         change = max(abs(one.y_max - two.y_max), abs(one.y_min - two.y_min))
-        if two.contact_loss_fraction == 0.0 and not _in_contact_damped(run):
+        if one.final_state is None or two.final_state is None:
+            yield LOST
+        elif two.contact_loss_fraction == 0.0 and not _in_contact_damped(run):
             yield NEUTRAL
         else:
             yield QUASI_PERIODIC if change < _LEAST_CHANGE else MOVING

@@ -14,7 +14,7 @@ from gearmesh.dynamics.periodic.shots import Shot
 from gearmesh.solvers.reduced.runs import is_reducible
 
 _TRIED = 64  # states near which orbits are searched for
-_LOOKS = 2  # searches among them
+_SEARCHES = 2  # searches among them
 _MOST_SHALLOW = 0.2  # in y_st
 
 
@@ -70,10 +70,10 @@ class Search:
                 labels[inside] = self.neutral()
         return labels
 
-    def look(self, states: np.ndarray) -> None:
+    def find_orbits(self, states: np.ndarray) -> None:
         """Search for stable orbits near states of runs that are not over."""
         some = states[:: math.ceil(len(states) / _TRIED)]
-        for orbit in stable_orbits_near(self.moved, some, _LOOKS):
+        for orbit in stable_orbits_near(self.moved, some, _SEARCHES):
             self._add(orbit)
 
     def _add(self, orbit: Shot) -> None:
@@ -91,14 +91,13 @@ class Search:
         margins : ndarray, shape (n,)
             Highest margin of each run after its first periods.
         """
-        if self.envelope is None:
+        neutral = np.array([one.kind == NEUTRAL for one in self.attractors])[labels]
+        if self.envelope is None or not neutral.any():
             return
-        index = self.neutral()
-        kept = [margins[labels != index]]
+        kept = [margins[~neutral]]
         kept += [self.envelope.margins(region.points) for _, region in self._regions]
         highest = float(np.concatenate(kept).max(initial=-math.inf))
-        if (labels == index).any():
-            self._shallow = max(0.0, min(_MOST_SHALLOW, -0.5 * highest))
+        self._shallow = max(0.0, min(_MOST_SHALLOW, -0.5 * highest))
 
     def classified(self, states: np.ndarray, before: np.ndarray) -> np.ndarray:
         """Return the attractors of motions that no orbit holds after the transient.
@@ -111,7 +110,7 @@ class Search:
         """
         labels = np.full(len(states), -1)
         if self.envelope and any(self.problem.lubricant):
-            rising = self.envelope.margins(states) > RISE * before
+            rising = np.isfinite(before) & (self.envelope.margins(states) > RISE * before)
             if rising.any():
                 labels[rising] = self.neutral()
         open_ = np.flatnonzero(labels < 0)

@@ -214,7 +214,7 @@ def follow(
     # Near a branching the slope may be rounding, so the ends tell where the branch begins.
     back, ahead = sorted(walks, key=lambda one: one.pieces[-1].points[-1].values)
     pieces = joined(back, ahead)
-    located = [*back.flip[: back is not ahead], *_special(pieces), *ahead.flip]
+    located = [*back.flip, *_special(pieces), *ahead.flip]
     return Branch(
         parameter,
         pieces,

@@ -24,7 +24,7 @@ from gearmesh.dynamics.periodic.charts import (
 )
 from gearmesh.dynamics.periodic.differences import LARGEST_STEP, jacobian
 from gearmesh.dynamics.periodic.general_events import gap_extrema, stiffness_jumps
-from gearmesh.dynamics.periodic.orbits import TimeCourse, sorted_multipliers
+from gearmesh.dynamics.periodic.orbits import TimeCourse, judged, sorted_multipliers
 from gearmesh.errors import NoOrbit
 from gearmesh.model.contact import regime_of
 from gearmesh.model.problem import Problem, State
@@ -36,7 +36,6 @@ _TOLERANCE = 1e-14
 SAME = 1e-8
 """Distance between states that count as the same, and between numbers that count as whole."""
 
-_LEAST_GROWTH = 1e-7
 _RESOLVED = 1e-4  # least multiplier that differences over the whole period resolve to 1e-4
 
 
@@ -263,12 +262,12 @@ class GeneralOrbit:
     @property
     def neutral(self) -> bool:
         """Whether no damping of the mesh acts along the orbit and nothing grows."""
-        return self.undamped and abs(self.multipliers[0]) < 1.0 + _LEAST_GROWTH
+        return bool(judged(self.multipliers, self.undamped)[1])
 
     @property
     def stable(self) -> bool:
         """Whether all multipliers are inside the unit circle and the orbit is not neutral."""
-        return not self.neutral and bool(abs(self.multipliers[0]) < 1.0)
+        return bool(judged(self.multipliers, self.undamped)[0])
 
     @cached_property
     def signature(self) -> tuple[int, ...]:

@@ -382,8 +382,8 @@ def judged(multipliers: np.ndarray, undamped: bool | np.ndarray) -> tuple[np.nda
     undamped : bool or ndarray, shape (...)
     """
     size = np.abs(multipliers[..., 0])
-    neutral = undamped & ~(size >= 1.0 + _LEAST_GROWTH)
-    return ~neutral & ~(size >= 1.0), neutral
+    neutral = undamped & (size < 1.0 + _LEAST_GROWTH)
+    return ~neutral & (size < 1.0), neutral
 
 
 def sorted_multipliers(multipliers: np.ndarray) -> np.ndarray:
