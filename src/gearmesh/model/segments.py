@@ -44,8 +44,8 @@ def pitch_offset_of(problem: Problem) -> float:
     return pitch_offset(wheel_3.teeth, wheel_2.teeth, problem.pressure_angle, problem.contact_ratio)
 
 
-def segments(problem: Problem) -> tuple[Segment, ...]:
-    """Cut a mesh period of `problem` at the jumps and kinks of C(t) and the jumps of gamma(t).
+def edges(problem: Problem) -> tuple[float, ...]:
+    """Return the mesh phases of the jumps and kinks of C(t) and of the jumps of gamma(t).
 
     The rectangular wave and friction jump at the switches of C(t), as do factors of single teeth;
     friction jumps at the pitch point too. If pairs of teeth touch singly, the pairs in contact
@@ -55,13 +55,18 @@ def segments(problem: Problem) -> tuple[Segment, ...]:
     terms = problem.terms
     smooth = problem.stiffness_harmonics or terms.stiffness_fourier or terms.stiffness_table
     switches = rubs or not smooth or bool(terms.tooth_factors) or terms.pairs_touch_singly
-    offset = pitch_offset_of(problem)
     places = [*(switch_phases(problem.contact_ratio) if switches else ())]
-    places += [PITCH_PHASE + offset] * rubs
+    places += [PITCH_PHASE + pitch_offset_of(problem)] * rubs
     places += [phase for phase, _ in terms.stiffness_table]
     places += relief_places(problem)
     places += path_places(problem.contact_ratio, len(terms.tooth_pair_stiffness))
-    return _cut(problem.contact_ratio, problem.initial_phase, offset, tuple(places))
+    return tuple(places)
+
+
+def segments(problem: Problem) -> tuple[Segment, ...]:
+    """Cut a mesh period of `problem` at the edges of C(t) and gamma(t)."""
+    offset = pitch_offset_of(problem)
+    return _cut(problem.contact_ratio, problem.initial_phase, offset, edges(problem))
 
 
 @lru_cache

@@ -1,8 +1,10 @@
 """Branches of orbits: how a periodic motion changes with a parameter, and where it ends."""
 
+import contextlib
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property, partial
+from itertools import product
 from typing import overload
 
 import numpy as np
@@ -18,6 +20,7 @@ from gearmesh.dynamics.continuation.tracing import first_values
 from gearmesh.dynamics.continuation.walks import (
     CLOSED,
     LONGEST_STEP,
+    Limits,
     Piece,
     check_inside,
     clear_phase,
@@ -25,9 +28,12 @@ from gearmesh.dynamics.continuation.walks import (
     points_of,
     walk,
 )
+from gearmesh.dynamics.periodic.general_search import in_all_coordinates
+from gearmesh.dynamics.periodic.orbits import Orbit
 from gearmesh.dynamics.periodic.shots import Shot
-from gearmesh.errors import NoOrbit
+from gearmesh.errors import InputError, NoOrbit
 from gearmesh.model.problem import Problem
+from gearmesh.solvers.reduced.runs import is_reducible
 
 _AMPLITUDE = 1e-3  # of the first orbit after a flip
 
@@ -200,7 +206,8 @@ def follow(
     low, high = limits
     check_inside(parameter, value, low, high)
     phase = orbit.problem.initial_phase
-    moved = orbit.at_phase(clear_phase(orbit))
+    orbit = serving(orbit, family, (limits,))
+    moved = orbit.at_phase(clear_phase(orbit, stretches))
     curve = Curve(
         family,
         orbit.periods,
@@ -228,6 +235,16 @@ def field_family(problem: Problem, *names: str) -> Family:
     """Return the problems that differ from `problem` in the named fields."""
     changed: Callable[..., Problem] = partial(replace, problem)
     return lambda *values: changed(**dict(zip(names, values, strict=True)))
+
+
+def serving(orbit: Shot, family: Family, limits: Limits) -> Shot:
+    """Return an orbit in the coordinates that the problems of a family need."""
+    if isinstance(orbit, Orbit):
+        for corner in product(*limits):
+            with contextlib.suppress(InputError):
+                if not is_reducible(family(*corner)):
+                    return in_all_coordinates(orbit)
+    return orbit
 
 
 def _special(pieces: list[Piece]) -> list[tuple[str, Point]]:
@@ -258,7 +275,7 @@ def double_period(point: SpecialPoint, family: Family | None = None) -> tuple[Sh
     ((parameter, value),) = point.parameters.items()
     stretches = family is None and parameter == "nu"
     family = family or field_family(point.orbit.problem, parameter)
-    single = point.orbit.at_phase(clear_phase(point.orbit))
+    single = point.orbit.at_phase(clear_phase(point.orbit, stretches))
     phase = single.problem.initial_phase
     curve = Curve(family, 2 * single.periods, (1.0,), phase, single, stretches=stretches)
     across = np.linalg.svd(single.monodromy + np.eye(len(single.monodromy)))[2][-1]

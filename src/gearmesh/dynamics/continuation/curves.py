@@ -34,6 +34,10 @@ ASTRAY = 0.02
 share of the distance of the nearest two. A point farther away may belong to another branch."""
 
 
+_CLOSE = 1e-6  # distance at which no other branch is told apart
+_ANYWHERE = -math.inf, math.inf
+
+
 def unit_of(low: float, high: float) -> float:
     """Return the unit of a parameter that is followed over a range.
 
@@ -211,9 +215,23 @@ class Curve:
         bend = rest * ahead * left.tangent - share * behind * right.tangent
         place = left.place + share * share * (3.0 - 2.0 * share) * apart + bend
         found = self.point(place, normal, left.tangent)
-        if np.linalg.norm(found.place - place) > ASTRAY * np.linalg.norm(apart):
+        away = float(np.linalg.norm(found.place - place))
+        if away > max(ASTRAY * float(np.linalg.norm(apart)), _CLOSE):
             raise NoOrbit("the corrector leads away from the branch")
         return found
+
+    def half_way(self, left: Point, right: Point) -> Point:
+        """Return a point at most half of the way between two, by a step from the left one.
+
+        Raises
+        ------
+        NoOrbit
+            If no step leads further.
+        """
+        length = 0.5 * float(left.tangent @ (right.place - left.place))
+        if self.tracer is not None:
+            return self.tracer.ahead(left, length, length, _ANYWHERE, 1)[0][0]
+        return self._step_on(left, length, (_ANYWHERE,) * len(self.units))[0]
 
     def step(self, point: Point, length: float) -> Point:
         """Return the point one step ahead along the tangent."""
@@ -340,8 +358,11 @@ class Curve:
         here = self._defect(orbit)
         try:
             side, one = 1, beside(1)
-        except NoOrbit:
-            side, one = -1, beside(-1)
+        except NoOrbit as error:
+            try:
+                side, one = -1, beside(-1)
+            except NoOrbit:
+                raise error from None
         if rough:
             return side * (one - here) / _DIFFERENCE
         return side * (4.0 * one - beside(2 * side) - 3.0 * here) / (2.0 * _DIFFERENCE)

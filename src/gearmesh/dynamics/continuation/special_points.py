@@ -23,7 +23,7 @@ from gearmesh.solvers.reduced.derivatives.variational import AFTER, BEFORE, VELO
 _NARROWEST_PIECE = 1e-11  # between two grazings, in which multipliers are tested
 _FAR = 2.0  # times its changes between points nearby: more than a function falls between two
 _LARGEST_VALUE = 1e-7  # of a test function at its root: more is a jump
-_LEAST_SLOPE = 1e-6  # of the parameter along a branch at both sides of a fold
+_LEAST_SLOPE = 1e-6  # of the parameter along a branch at one side of a fold; less is rounding
 _SAME_SWITCHING = 1e-9  # distance in the parameter
 
 
@@ -142,7 +142,7 @@ def _confirmed(test: Test, left: Point, point: Point, right: Point) -> bool:
     if not abs(value(point)) < _LARGEST_VALUE * scale:
         return False
     if kind == "fold":
-        return min(abs(left.slope), abs(right.slope)) > _LEAST_SLOPE
+        return max(abs(left.slope), abs(right.slope)) > _LEAST_SLOPE
     if kind == "torus":
         sides = left.orbit, right.orbit
         return _has_pair_on_the_unit_circle(point.orbit) and all(map(_is_off_the_circle, sides))

@@ -91,16 +91,21 @@ class Tracer:
         return Track(self, _directed(rows, alongs), events)
 
     def ahead(
-        self, point: Point, length: float, longest: float, limits: tuple[float, float]
+        self,
+        point: Point,
+        length: float,
+        longest: float,
+        limits: tuple[float, float],
+        most: int = _MOST_STEPS,
     ) -> tuple["Track", float]:
-        """Return the next points and the next length as of `Curve.ahead`."""
+        """Return the next points and the next length as of `Curve.ahead`, after `most` steps."""
         rows, events, length = trace(
             self.stated,
             point.place,
             point.tangent,
             self.unit,
             MOST_CORRECTIONS,
-            _MOST_STEPS,
+            most,
             length,
             longest,
             limits,

@@ -16,6 +16,8 @@ from gearmesh.dynamics.continuation.tracing import backwards, chained, geometry
 from gearmesh.dynamics.continuation.zeros import passages
 from gearmesh.dynamics.periodic.shots import Motion, Shot
 from gearmesh.errors import NoOrbit
+from gearmesh.model.problem import Problem
+from gearmesh.model.segments import edges
 from gearmesh.solvers.reduced.derivatives.curves import FARTHEST, is_clear
 
 Limits = tuple[tuple[float, float], ...]
@@ -39,6 +41,7 @@ _FIRST_STEP = 0.25  # of the longest
 _AT_LIMIT = 1e-9  # share of the range of the parameter
 _SAME = 1e-7  # distance between two states that are the same
 _PLACES = 64  # of an orbit, at which its distance from the ends of regimes is taken
+_KEPT, _CHOSEN = 0.25, 0.5  # least distances from edges of a phase, as shares of the greatest
 _OPPOSITE = 0.9  # cosine between vectors that point away from each other
 _REACH = 0.3  # length of the branch of half the period on which its flip is searched for
 
@@ -89,25 +92,41 @@ def check_inside(name: str, value: float, low: float, high: float) -> None:
         raise NoOrbit(f"{name} = {value:.6g} of the orbit is outside {low:.6g} to {high:.6g}")
 
 
-def clear_phase(orbit: Shot) -> float:
+def clear_phase(orbit: Shot, over_nu: bool) -> float:
     """Return a mesh phase at which the orbit is far from the ends of its regimes.
 
     The phase of the orbit's state is kept if it is at least half as far from them as the best
     phase, or if mesh periods differ, because it fixes the angles of the shafts.
+
+    Unless nu alone varies, the phase is also far from the edges of C(t) and gamma(t): these may
+    move, and the state has a kink where one passes the phase.
     """
     phase = orbit.problem.initial_phase
     if orbit.repeats_after > 1:
         return phase
-    if not _is_clear(orbit):
+    if not _is_clear(orbit) or not (over_nu or _from_edges(orbit.problem, phase) > _KEPT):
         y = orbit.time_course(_PLACES).y
         away = np.minimum(np.abs(y), np.abs(y + orbit.backlash))
-        phase += int(np.argmax(away)) / _PLACES
+        phases = phase + np.arange(len(y)) / _PLACES
+        if not over_nu:
+            away[[not _from_edges(orbit.problem, one) > _CHOSEN for one in phases.tolist()]] = -1.0
+        phase = phases[np.argmax(away)]
     return float(phase % 1.0)
 
 
 def _is_clear(motion: Motion) -> bool:
     clear: bool = is_clear.py_func(motion.y, motion.y_max, motion.y_min, motion.backlash)  # type: ignore[attr-defined]
     return clear
+
+
+def _from_edges(problem: Problem, phase: float) -> float:
+    """Return how far a phase is from the edges of C(t) and gamma(t), from 0 to 1."""
+    places = np.sort(np.array(edges(problem)) % 1.0)
+    if not places.size:
+        return 1.0
+    widest = np.diff(places, append=places[0] + 1.0).max()
+    away = np.abs((places - phase + 0.5) % 1.0 - 0.5)
+    return float(2.0 * away.min() / widest)
 
 
 def joined(back: Walk, ahead: Walk) -> list[Piece]:
@@ -138,8 +157,8 @@ def _walk(curve: Curve, start: Point, limits: Limits, longest: float) -> Walk:
         if _leaves(curve, point, limits):
             return Walk(pieces, LIMIT, [])
         try:
-            if not _is_clear(point.motion):
-                phase = clear_phase(point.orbit)
+            if not curve.stretches or not _is_clear(point.motion):
+                phase = clear_phase(point.orbit, curve.stretches)
                 if phase != curve.phase:
                     curve, point = curve.moved_to(phase, point)
                     pieces.append(Piece(curve, curve.track(point)))

@@ -64,7 +64,7 @@ def zeros(
             )
             yield start, found, end
         elif _may_dip(test.function, (start, values[0]), (end, values[1]), beside, offset):
-            middle = curve.between(start, end, start.tangent, 0.5)
+            middle = _inside(curve, start, end, start.tangent, 0.5)
             pieces += [(start, middle), (middle, end)]
 
 
@@ -125,7 +125,8 @@ def _may_dip(
 def _locate(curve: Curve, left: Point, right: Point, test: Test) -> Point:
     """Return the point between two others where a test function passes 0.
 
-    A polynomial through the values that are known nearby predicts the root, again and again.
+    A polynomial through the values that are known nearby predicts the root, again and again. If
+    the curve cannot be followed up to the root, the point is the nearest to it that is known.
     """
     normal, length = left.tangent, length_between(left, right)
     low = _Known(0.0, test.function(left), left)
@@ -144,7 +145,11 @@ def _locate(curve: Curve, left: Point, right: Point, test: Test) -> Point:
         if here or (count > _MOST_PREDICTIONS and count % 2):
             share = 0.5 * (low.share + high.share)
         part = (share - low.share) / (high.share - low.share)
-        point = curve.between(low.point, high.point, normal, part)
+        try:
+            point = _inside(curve, low.point, high.point, normal, part)
+        except NoOrbit:
+            break
+        share = float((point.place - left.place) @ normal) / length
         new = _Known(share, test.function(point), point)
         if not abs(new.value) > 0.0:
             return point
@@ -157,6 +162,18 @@ def _locate(curve: Curve, left: Point, right: Point, test: Test) -> Point:
             others, high = [*others, high[:2]], new
         count += 1
     return min(low, high, key=_size).point
+
+
+def _inside(curve: Curve, left: Point, right: Point, normal: np.ndarray, share: float) -> Point:
+    """Return a point between two others, if possible at a share of the way, as `Curve.between`.
+
+    Where the curve has a kink, as at a grazing, polynomials across it predict badly. A step from
+    the left point is then at most half of the way.
+    """
+    try:
+        return curve.between(left, right, normal, share)
+    except NoOrbit:
+        return curve.half_way(left, right)
 
 
 class _Known(NamedTuple):

@@ -14,9 +14,10 @@ from gearmesh.dynamics.periodic.general_orbits import (
     run_of,
     shot_from,
 )
+from gearmesh.dynamics.periodic.orbits import Orbit
 from gearmesh.errors import NoOrbit
 from gearmesh.model.motion import start
-from gearmesh.model.problem import Problem
+from gearmesh.model.problem import Problem, State
 from gearmesh.solvers.full.coordinates import signs_act
 from gearmesh.solvers.reduced.derivatives.curves import LARGEST_RESIDUAL
 
@@ -52,6 +53,18 @@ def find_orbit(problem: Problem, periods: int = 1) -> GeneralOrbit:
             raise NoOrbit("the motion from the start cannot be integrated")
         place = chart_of(problem).place_of_six(np.array(rest.coordinates))
     return correct(shot_from(bare, chart_of(problem).unknowns(place), periods, float(place[0])))
+
+
+def in_all_coordinates(orbit: Orbit) -> GeneralOrbit:
+    """Return an orbit of the reduced system as one of the general solver.
+
+    Raises
+    ------
+    NoOrbit
+        If Newton's method leads away from it.
+    """
+    state = State(*orbit.state.tolist())
+    return find_orbit(replace(orbit.problem, initial_state=state), orbit.periods)
 
 
 def _settled(problem: Problem, place: np.ndarray, periods: int) -> GeneralOrbit:

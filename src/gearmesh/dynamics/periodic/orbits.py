@@ -278,6 +278,8 @@ class Orbit:
         NoOrbit
             If the motion cannot be integrated.
         """
+        if not is_reducible(problem):
+            raise NoOrbit("other coordinates are needed there: a term appears")
         if problem.initial_state is not None:
             problem = replace(problem, initial_state=None)
         moved = passage(problem, state, periods)
