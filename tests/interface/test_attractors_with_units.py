@@ -82,6 +82,7 @@ WRONG = {
     "nested phases": lambda pair: gm.basins(pair, "c-material", 0.7, y=1, phase=[[0], [0, 1]]),
     "y": lambda pair: gm.basins(pair, "c-material", 0.7, y=["1 kg"]),
     "y twice": lambda pair: gm.basins(pair, "c-material", 0.7, y=[1.0, "1 y_st"]),
+    "phase twice": lambda pair: gm.basins(pair, "c-material", 0.7, y=1.0, phase=[0.0, 1.0]),
     "phase": lambda pair: gm.basins(pair, "c-material", 0.7, y=1.0, phase=1.5),
     "periods": lambda pair: gm.lyapunov_spectrum(pair, "c-material", 0.7, periods=7),
 }

@@ -251,6 +251,8 @@ WRONG = {
         orbit, ("nu", "damping"), ((0.6, 0.7), (1, 10))
     ),
     "limits": lambda pair, orbit: gm.follow(orbit, "nu", (1.2, 0.6)),
+    "limits that are almost one": lambda pair, orbit: gm.follow(orbit, "nu", (0.7, 0.7 + 1e-14)),
+    "no values": lambda pair, orbit: gm.follow(orbit, "nu", (0.6, 0.8)).resampled([]),
     "limit in kg": lambda pair, orbit: gm.follow(orbit, "backlash", ("1 kg", "2 kg")),
 }
 
@@ -299,3 +301,51 @@ def test_lengths_change_also_if_both_ends_have_the_static_deflection_of_the_pair
     found = static_deflection(pair, ("torque",), at_ends)
     np.testing.assert_allclose(found, pair.static_deflection * np.array([1.0, 1.1, 1.0]))
     assert static_deflection(pair, ("torque",), at_ends[[0, 2]]) == pair.static_deflection
+
+
+@pytest.mark.parametrize(
+    ("name", "limits"), [("restoring_3", (0.0, 0.2)), ("restoring_power", (1.0, 1.2))]
+)
+def test_a_term_that_appears_on_the_way_acts(pair, orbit, name, limits):
+    """The orbit is one of the reduced system, which does not have these terms."""
+    branch = gm.follow(orbit, name, limits)
+    assert branch.ends == ("limit", "limit")
+    last = branch.at(-1)
+    alone = gm.find_orbit(last.pair, "c-material", 0.7)
+    assert last.found.y_max == pytest.approx(alone.found.y_max, abs=1e-9)
+    assert abs(last.found.y_max - orbit.found.y_max) > 0.01
+
+
+def test_a_curve_in_two_parameters_feels_a_term_that_appears(pair):
+    branch = gm.follow(gm.find_orbit(pair, "c-lubricant", 0.7), "nu", (0.64, 0.72))
+    flip = next(point for point in branch.special if point.kind == "flip")
+    curve = gm.follow_special(flip, ("nu", "restoring_3"), ((0.6, 0.72), (0.0, 0.01)))
+    assert curve.found.ends == ("limit", "limit")
+    nu, last = curve.found.values[-1]
+    stiffer = gm.find_orbit(pair.replace(restoring_3=float(last)), "c-lubricant", nu - 0.005)
+    beside = gm.follow(stiffer, "nu", (nu - 0.01, nu + 0.005))
+    assert [point.nu for point in beside.special] == pytest.approx([nu], abs=1e-8)
+
+
+def test_a_term_that_needs_other_coordinates_is_said(pair, orbit):
+    with pytest.raises(gm.NoOrbit, match="other coordinates are needed"):
+        gm.follow(orbit, "eccentricity", ("0 um", "10 um"))
+
+
+@pytest.mark.parametrize(("variant", "nu"), [("b-material", 0.8), ("c-lubricant", 0.9)])
+def test_switches_move_across_the_initial_phase(pair, variant, nu):
+    """The initial phase of the paper's pair is a switch of C(t), which the contact ratio moves."""
+    branch = gm.follow(gm.find_orbit(pair, variant, nu), "contact_ratio", (1.3, 1.9))
+    assert branch.ends == ("limit", "limit")
+    for point in (0, -1):
+        there = branch.at(point)
+        alone = gm.find_orbit(there.pair, variant, nu, start=there)
+        assert there.found.y_max == pytest.approx(alone.found.y_max, abs=1e-9)
+
+
+def test_a_grazing_at_which_the_branch_bends_sharply_is_located(pair):
+    """Polynomials across the grazing miss by more than the corrector may move a point."""
+    branch = gm.follow(gm.find_orbit(pair, "c-material", 0.9), "backlash", ("2 um", "100 um"))
+    (point,) = branch.special
+    assert point.kind == "grazing_back"
+    assert point.parameters["backlash"] == pytest.approx(-float(point.orbit.found.y_min) * 0.01)

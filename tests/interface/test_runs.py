@@ -160,6 +160,7 @@ WRONG = {
     "no run": lambda _: gm.spectrum(None),
     "run as a start": lambda pair: gm.sweep(pair, "c-both", 0.7, start=xr.Dataset()),
     "no frequency": lambda pair: gm.sweep(pair, "c-both", []),
+    "variant twice": lambda pair: gm.sweep(pair, ["c-both", "c-both"], 0.7),
     "no variant": lambda pair: gm.sweep(pair, [], 0.7),
 }
 

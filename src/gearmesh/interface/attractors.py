@@ -150,7 +150,8 @@ def basins(
     heights, rates = (
         _once(name, read_lengths(pair, name, values)) for name, values in (("y", y), ("v", v))
     )
-    phases = _once("phase", _phases(pair, phase))
+    phases = _phases(pair, phase)
+    _once("phase", phases % 1.0)
     found = dynamics.basins(problem, heights, rates, phases.tolist(), revolutions)
     dataset = _described(found.attractors, pair, len(map_of(problem).weights))
     for name, values, what in zip(

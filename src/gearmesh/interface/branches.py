@@ -77,7 +77,7 @@ class Branch:
     Attributes
     ----------
     orbit : Orbit
-        Where the branch was entered.
+        Where the branch was entered. It is no point of the branch unless it is an end.
     found : gearmesh.dynamics.continuation.branches.Branch
         The branch in dimensionless form.
     """
@@ -92,7 +92,11 @@ class Branch:
 
     @property
     def ends(self) -> tuple[str, str]:
-        """Why the branch ends at its first and at its last point."""
+        """Why the branch ends at its first and at its last point.
+
+        ``"limit"``, ``"closed"``, ``"half the period"``, ``"far"``, ``"too many points"``, or the
+        reason why Newton's method failed.
+        """
         return self.found.ends
 
     def at(self, point: int) -> Orbit:

@@ -26,6 +26,8 @@ _INSTEAD = {
 }
 """The parameter that holds where another one is left open."""
 
+_NARROWEST = 1e-9  # range of a parameter, as a share of its larger end
+
 
 def number_of(pair: Pair, name: str) -> Any:
     """Return a parameter: a single number if both wheels have the same one.
@@ -111,12 +113,19 @@ def read_limits(pair: Pair, name: str, limits: object) -> tuple[float, float]:
     low, high = (_read_value(pair, name, bare(end), "limits of ") for end in ends)
     if not low < high:
         raise InputError(f"limits of {name}: found ({low:g}, {high:g}); allowed is low < high")
+    if not high - low > _NARROWEST * max(abs(low), abs(high)):
+        raise InputError(
+            f"limits of {name}: found ({low!r}, {high!r}); allowed is a difference of more than "
+            f"{_NARROWEST:g} of the larger one"
+        )
     return low, high
 
 
 def read_values(pair: Pair, name: str, values: object) -> np.ndarray:
     """Read values of a parameter; thousands of floats are checked at once."""
     given = several(values)
+    if not given:
+        raise InputError(f"{name}: no value given; allowed is one or several")
     if set(map(type, given)) == {float}:
         numbers, stated = np.array(given), _declaration(name)
         if np.all((stated["low"] <= numbers) & (numbers <= stated["high"])):

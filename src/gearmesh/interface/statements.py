@@ -71,6 +71,8 @@ def read_variants(values: str | Variant | Iterable[str | Variant]) -> list[Varia
     found = [read_variant(value) for value in values]
     if not found:
         raise InputError("variants: none given; allowed is one name or several")
+    if len(set(found)) < len(found):
+        raise InputError("variants: a variant occurs twice; allowed is each once")
     return found
 
 

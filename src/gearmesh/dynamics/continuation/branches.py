@@ -54,7 +54,7 @@ class Branch:
         Kinds and places of the special points, in their order along the branch.
     ends : tuple of two str
         Why the branch ends at its first and at its last point: `LIMIT`, `CLOSED`, `HALVED`, `FAR`,
-        or the reason why the corrector failed.
+        `LONG`, or the reason why the corrector failed.
     chosen : list of Piece, optional
         The pieces with points at chosen values of the parameter.
     """

@@ -32,10 +32,10 @@ It grows in proportion to motions of more than `gearmesh.solvers.reduced.derivat
 MOST_POINTS = 4000
 """Greatest number of points of a walk."""
 
-LIMIT, CLOSED, HALVED, FAR = "limit", "closed", "half the period", "far"
+LIMIT, CLOSED, HALVED, FAR, LONG = "limit", "closed", "half the period", "far", "too many points"
 """Ends of a branch: at a limit of the parameter; at its own first point; at a flip of an orbit of
 half the period, behind which the same orbits follow half a period later; at motions larger than
-`gearmesh.solvers.reduced.derivatives.curves.FARTHEST`."""
+`gearmesh.solvers.reduced.derivatives.curves.FARTHEST`; at the point `MOST_POINTS`."""
 
 _FIRST_STEP = 0.25  # of the longest
 _AT_LIMIT = 1e-9  # share of the range of the parameter
@@ -184,7 +184,7 @@ def _walk(curve: Curve, start: Point, limits: Limits, longest: float) -> Walk:
         point = ahead[-1]
         if point.size > FARTHEST:
             return Walk(pieces, FAR, [])
-    return Walk(pieces, "too many points", [])
+    return Walk(pieces, LONG, [])
 
 
 def _up_to_end(
