@@ -23,7 +23,8 @@ from gearmesh.solvers.reduced.derivatives.variational import AFTER, BEFORE, VELO
 _NARROWEST_PIECE = 1e-11  # between two grazings, in which multipliers are tested
 _FAR = 2.0  # times its changes between points nearby: more than a function falls between two
 _LARGEST_VALUE = 1e-7  # of a test function at its root: more is a jump
-_LEAST_SLOPE = 1e-6  # of the parameter along a branch at one side of a fold; less is rounding
+_LEAST_SLOPE = 1e-6  # of the parameter along a branch; less may be rounding
+_ASIDE = 1e-4  # distance along a branch
 _SAME_SWITCHING = 1e-9  # distance in the parameter
 
 
@@ -57,7 +58,7 @@ def search(
         (test.kind, point)
         for test in tests
         for start, point, end in zeros(curve, left, right, test, beside)
-        if _confirmed(test, start, point, end)
+        if _confirmed(test, start, point, end, beside)
     ]
     return _in_order(left, found)
 
@@ -135,14 +136,14 @@ def _once(events: list[tuple[str, Point]]) -> list[tuple[str, Point]]:
     return kept
 
 
-def _confirmed(test: Test, left: Point, point: Point, right: Point) -> bool:
+def _confirmed(test: Test, left: Point, point: Point, right: Point, beside: Beside) -> bool:
     """Return whether the root of a test function is a special point and not a jump."""
     kind, value = test.kind, test.function
     scale = max(1.0, abs(value(left)), abs(value(right)))
     if not abs(value(point)) < _LARGEST_VALUE * scale:
         return False
     if kind == "fold":
-        return max(abs(left.slope), abs(right.slope)) > _LEAST_SLOPE
+        return _slope_outside(left, -_ASIDE, beside) * _slope_outside(right, _ASIDE, beside) < 0.0
     if kind == "torus":
         sides = left.orbit, right.orbit
         return _has_pair_on_the_unit_circle(point.orbit) and all(map(_is_off_the_circle, sides))
@@ -151,6 +152,15 @@ def _confirmed(test: Test, left: Point, point: Point, right: Point) -> bool:
     if kind == "branch_point":
         return left.slope * right.slope > 0.0
     return True
+
+
+def _slope_outside(end: Point, away: float, beside: Beside) -> float:
+    """Return the slope of the parameter at an end of a piece, or 0 if it is only rounding.
+
+    An end may be the fold itself, where the slope is 0. It is then not so a little farther away.
+    """
+    slopes = end.slope, beside(end, away).slope if abs(end.slope) <= _LEAST_SLOPE else 0.0
+    return next((slope for slope in slopes if abs(slope) > _LEAST_SLOPE), 0.0)
 
 
 def _turns_at_a_switch(motion: Motion) -> bool:
