@@ -22,6 +22,7 @@ from gearmesh.dynamics.continuation.walks import (
     LONGEST_STEP,
     Limits,
     Piece,
+    Walk,
     check_inside,
     clear_phase,
     joined,
@@ -178,7 +179,8 @@ def follow(
 ) -> Branch:
     """Follow an orbit in one parameter, in both directions.
 
-    The branch begins at the end with the lower value of the parameter.
+    The branch begins at the end with the lower value of the parameter, or with the lower greatest
+    y if both values are the same.
 
     Parameters
     ----------
@@ -219,7 +221,7 @@ def follow(
     start = curve.at(moved, (value,))
     walks = walk(curve, start, (limits,), longest_step)
     # Near a branching the slope may be rounding, so the ends tell where the branch begins.
-    back, ahead = sorted(walks, key=lambda one: one.pieces[-1].points[-1].values)
+    back, ahead = sorted(walks, key=_place_of_end)
     pieces = joined(back, ahead)
     located = [*back.flip, *_special(pieces), *ahead.flip]
     return Branch(
@@ -229,6 +231,12 @@ def follow(
         located,
         (back.reason, ahead.reason),
     )
+
+
+def _place_of_end(one: Walk) -> tuple[float, float]:
+    """Return what tells which of two walks ends lower."""
+    end = one.pieces[-1].points[-1]
+    return end.values[0], end.motion.y_max
 
 
 def field_family(problem: Problem, *names: str) -> Family:

@@ -23,7 +23,7 @@ from gearmesh.solvers.reduced.derivatives.variational import AFTER, BEFORE, VELO
 _NARROWEST_PIECE = 1e-11  # between two grazings, in which multipliers are tested
 _FAR = 2.0  # times its changes between points nearby: more than a function falls between two
 _LARGEST_VALUE = 1e-7  # of a test function at its root: more is a jump
-_LEAST_SLOPE = 1e-6  # of the parameter along a branch; less may be rounding
+_LEAST_SLOPE = 1e-8  # of the parameter along a branch; less may be rounding
 _ASIDE = 1e-4  # distance along a branch
 _SAME_SWITCHING = 1e-9  # distance in the parameter
 
