@@ -208,7 +208,7 @@ def follow(
     low, high = limits
     check_inside(parameter, value, low, high)
     phase = orbit.problem.initial_phase
-    orbit = serving(orbit, family, (limits,))
+    orbit = orbit if stretches else serving(orbit, family, (limits,))
     moved = orbit.at_phase(clear_phase(orbit, stretches))
     curve = Curve(
         family,

@@ -9,10 +9,9 @@ from gearmesh.dynamics.continuation.curves import ASTRAY, Curve
 from gearmesh.dynamics.continuation.points import Point
 from gearmesh.dynamics.continuation.tracing import chained, first_values, geometry
 from gearmesh.dynamics.continuation.walks import Piece
-from gearmesh.dynamics.continuation.zeros import length_between, passages
+from gearmesh.dynamics.continuation.zeros import STEEP, length_between, passages
 
 _SIDE = 3  # points on each side of an orbit from which it is predicted
-_STEADY = 0.02  # least slope of the parameter at points from which orbits are predicted
 
 
 def resampled(pieces: list[Piece], values: np.ndarray, closed: bool) -> list[Piece]:
@@ -53,7 +52,7 @@ def _passages(piece: Piece, values: np.ndarray) -> Sequence[Point]:
     """Return the points of a piece at the values, without its last point."""
     curve, points = piece.curve, piece.points
     places, tangents = geometry(points)
-    steep = np.abs(tangents[:, -1]) > _STEADY
+    steep = np.abs(tangents[:, -1]) > STEEP
     steady = steep[1:] & steep[:-1] & (tangents[1:, -1] * tangents[:-1, -1] > 0.0)
     intervals, wanted = _passed(values, first_values(points), steady)
     landed, strayed = _landed(curve, places, tangents, steady, intervals, wanted)

@@ -170,7 +170,7 @@ def _walk(curve: Curve, start: Point, limits: Limits, longest: float) -> Walk:
         points = chained(pieces[-1].points, ahead)
         first = len(points) - len(ahead) - 1
         if repeats is None and ahead:
-            first, repeats = first + 1, cache(partial(_repeats, ahead[0]))
+            first, repeats = first + 1, cache(partial(_repeats, ahead[0], curve.phase))
         if repeats is not None:
             closed = _closed(curve, points, first, repeats(curve.periods, curve.phase))
             if closed is not None:
@@ -220,8 +220,8 @@ def _at_limit(curve: Curve, point: Point, outside: Point, limits: Limits) -> Seq
         if not low <= outside.values[i] <= high:
             edge = low if outside.values[i] < low else high
             if abs(edge - point.values[i]) > _AT_LIMIT * curve.units[i]:
-                found = next(passages(curve, point, outside, edge, curve.beside, i), None)
-                return curve.track(found) if found else []
+                found = passages(curve, point, outside, edge, curve.beside, i)
+                return next(map(curve.track, found), [])
             break
     return []
 
@@ -272,8 +272,13 @@ def _flip_at_end(curve: Curve, point: Point) -> list[tuple[str, Point]]:
     return []
 
 
-def _repeats(point: Point, periods: int, phase: float) -> np.ndarray:
-    """Return the places of an orbit at a phase of each of its mesh periods, shape (n, k + m)."""
+def _repeats(point: Point, known: float, periods: int, phase: float) -> np.ndarray:
+    """Return the places of an orbit at a phase of each of its mesh periods, shape (n, k + m).
+
+    The point holds the place at a known phase.
+    """
+    if periods == 1 and phase == known:
+        return point.place[None]
     orbit = point.orbit.at_phase(phase)
     states, step = [orbit.state], orbit.repeats_after
     for _ in range(step, periods, step):

@@ -5,6 +5,7 @@ Where it has the same sign at both points, its tangents there show whether it ma
 between. If so, the piece of the branch is halved, and each half is searched.
 """
 
+import contextlib
 from collections.abc import Callable, Iterator
 from math import isnan
 from typing import NamedTuple
@@ -18,6 +19,9 @@ from gearmesh.errors import NoOrbit
 
 Beside = Callable[[Point, float], Point]
 """`Curve.beside` of a curve, which remembers the points."""
+
+STEEP = 0.02
+"""Least slope of a parameter at both ends of a piece between which it does not turn."""
 
 _OFFSET = 1e-5
 _NARROWEST = 1e-6  # piece of a branch; roots of one test closer than this are not separated
@@ -72,6 +76,15 @@ def passages(
     curve: Curve, left: Point, right: Point, value: float, beside: Beside, i: int = 0
 ) -> Iterator[Point]:
     """Yield the points between two others at a value of parameter `i`, which may turn there."""
+    axis = len(left.place) - len(curve.units) + i
+    slopes = left.tangent[axis], right.tangent[axis]
+    low, high = sorted((left.values[i], right.values[i]))
+    if low < value < high and min(map(abs, slopes)) > STEEP and slopes[0] * slopes[1] > 0.0:
+        share = (value - left.values[i]) / (right.values[i] - left.values[i])
+        with contextlib.suppress(NoOrbit):
+            normal = np.eye(len(left.place))[axis]
+            yield _moved(curve, curve.between(left, right, normal, share), value, i)
+            return
 
     def away(point: Point) -> float:
         return point.values[i] - value
