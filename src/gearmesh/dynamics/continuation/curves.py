@@ -220,7 +220,7 @@ class Curve:
             raise NoOrbit("the corrector leads away from the branch")
         return found
 
-    def half_way(self, left: Point, right: Point) -> Point:
+    def towards(self, left: Point, right: Point) -> Point:
         """Return a point at most half of the way between two, by a step from the left one.
 
         Raises

@@ -186,7 +186,7 @@ def _inside(curve: Curve, left: Point, right: Point, normal: np.ndarray, share: 
     try:
         return curve.between(left, right, normal, share)
     except NoOrbit:
-        return curve.half_way(left, right)
+        return curve.towards(left, right)
 
 
 class _Known(NamedTuple):
