@@ -70,6 +70,11 @@ class ResponseCurve:
         self.name = name
         self._known: dict[float, Response] = {}
 
+    @property
+    def runs(self) -> int:
+        """Number of runs so far."""
+        return len(self._known)
+
     def at(self, nu: Iterable[float]) -> list[Response]:
         """Return the responses at mesh frequencies ν_s, in their order."""
         wanted = [float(x) for x in nu]
