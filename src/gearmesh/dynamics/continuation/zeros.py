@@ -27,6 +27,7 @@ _OFFSET = 1e-5
 _NARROWEST = 1e-6  # piece of a branch; roots of one test closer than this are not separated
 _ROOT_WIDTH = 1e-13  # distance along a branch
 _RESOLUTION = 1e-6  # share of a piece; in less of it, rounding errors may hide a change
+_MOVED = 1e-5  # share of a piece by which a point may miss a value of the parameter
 _KNOWN = 6  # values from which a root is predicted
 _MOST_PREDICTIONS = 6  # after these every second point halves the interval
 _MOST_CORRECTIONS = 50  # of the root of a polynomial
@@ -89,8 +90,10 @@ def passages(
     def away(point: Point) -> float:
         return point.values[i] - value
 
+    least = _MOVED * max(abs(away(left)), abs(away(right)))
     for _, point, _ in zeros(curve, left, right, Test("passage", away), beside):
-        yield _moved(curve, point, value, i)
+        if abs(away(point)) <= least:
+            yield _moved(curve, point, value, i)
 
 
 def _moved(curve: Curve, point: Point, value: float, i: int) -> Point:
