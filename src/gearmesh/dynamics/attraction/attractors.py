@@ -15,7 +15,9 @@ from gearmesh.errors import NoOrbit
 SAME = 1e-6
 """Distance, in y_st, of two numbers that are the same."""
 
-_MOST_PERIODS = 12  # longest orbit that is searched for, in mesh periods
+MOST_PERIODS = 12
+"""Longest orbit that is searched for, in mesh periods."""
+
 _MOST_STEPS = 4  # the same in steps of the map, where a step takes several mesh periods
 _NEAR = 0.1  # distance after n periods, in y_st, of a state that may be close to an orbit
 _AS_CLOSE = 2.0
@@ -102,6 +104,14 @@ class Attractor:
         return False, self.orbit.periods, self.y_max, self.kind
 
 
+def returns_after(away: np.ndarray) -> int:
+    """Return after how many steps a motion returns, from its distances after 1, 2, 3, ... steps.
+
+    Of those after which it is about as close, the least number counts.
+    """
+    return int(np.argmax(away < _AS_CLOSE * away.min() + SAME)) + 1
+
+
 def stable_orbits_near(moved: PoincareMap, states: np.ndarray, most: int) -> Iterator[Shot]:
     """Yield stable orbits close to states after a transient.
 
@@ -114,7 +124,7 @@ def stable_orbits_near(moved: PoincareMap, states: np.ndarray, most: int) -> Ite
         themselves within 12 mesh periods, or 4 steps of the map.
     """
     path = [states]
-    for _ in range(max(_MOST_STEPS, _MOST_PERIODS // moved.block)):
+    for _ in range(max(_MOST_STEPS, MOST_PERIODS // moved.block)):
         path.append(moved.advance(path[-1], 1))
     places = np.array([moved.coordinates(one) for one in path])
     away = np.abs((places[1:] - places[0]) * moved.weights).max(axis=2)
@@ -122,10 +132,8 @@ def stable_orbits_near(moved: PoincareMap, states: np.ndarray, most: int) -> Ite
     for i in np.argsort(closest)[:most]:
         if not closest[i] < _NEAR:
             break
-        # The least period of those that return about as close.
-        steps = int(np.argmax(away[:, i] < _AS_CLOSE * closest[i] + SAME)) + 1
         try:
-            orbit = moved.orbit(states[i], steps)
+            orbit = moved.orbit(states[i], returns_after(away[:, i]))
         except NoOrbit:
             continue
         if orbit.stable:

@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from gearmesh.dynamics.attraction.attractors import SAME, Attractor
+from gearmesh.dynamics.attraction.attractors import MOST_PERIODS, Attractor, returns_after
 from gearmesh.dynamics.attraction.envelopes import RISE, Envelope, envelope_of
 from gearmesh.dynamics.attraction.irregular import irregular_kinds
 from gearmesh.dynamics.attraction.kinds import LOST, MOVING, NEUTRAL, PERIODIC
@@ -29,10 +29,8 @@ SETTLED = 1e-3
 """Distance from an orbit, in y_st, within which a motion has settled on it."""
 
 _CHUNK = 512  # cases at a time; it bounds the memory
-_MOST_PERIODS = 12  # of the orbits that are searched for
 _NEAR = 0.05  # distance after n periods, in y_st, of a motion that may approach an orbit
 _REACH = 0.1  # first correction, in y_st, of a motion that Newton's method may bring to an orbit
-_AS_CLOSE = 2.0
 
 
 class LongRun(NamedTuple):
@@ -157,10 +155,10 @@ def _in_contact(run: _Run, envelope: Envelope, kind: str) -> Attractor:
 def _candidates(run: _Run, strobes: np.ndarray, end: np.ndarray) -> Iterator[Orbit]:
     """Yield the stable orbits that a run may approach: those known before, and a new one."""
     yield from run.known
-    back = np.abs(strobes[-2 : -2 - _MOST_PERIODS : -1] - strobes[-1]).max(axis=1)
+    back = np.abs(strobes[-2 : -2 - MOST_PERIODS : -1] - strobes[-1]).max(axis=1)
     if not back.min() < _NEAR:
         return
-    periods = int(np.argmax(back < _AS_CLOSE * back.min() + SAME)) + 1
+    periods = returns_after(back)
     moved = passage(run.problem, end, periods)
     if not np.abs(newton_correction(moved, end) * WEIGHTS).max() < _REACH:
         return
