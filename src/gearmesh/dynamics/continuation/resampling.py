@@ -179,10 +179,11 @@ def _interpolated(
     for order in range(2, len(nodes)):
         apart = nodes[order:] - nodes[:-order]
         factors[order:] = np.diff(factors[order - 1 :], axis=0) / apart[..., None]
-    found = factors[-1, each]
+    # Of NumPy's ways to pick rows, `take` is the fastest by far.
+    found = factors[-1].take(each, axis=0)
     for i in range(len(nodes) - 2, -1, -1):
-        found *= (at - nodes[i, each])[:, None]
-        found += factors[i, each]
+        found *= (at - nodes[i].take(each))[:, None]
+        found += factors[i].take(each, axis=0)
     found[:, -1] = at
     return found
 
