@@ -208,7 +208,7 @@ def follow(
     low, high = limits
     check_inside(parameter, value, low, high)
     phase = orbit.problem.initial_phase
-    orbit = orbit if stretches else serving(orbit, family, (limits,))
+    orbit = orbit if stretches else in_coordinates_of(orbit, family, (limits,))
     moved = orbit.at_phase(clear_phase(orbit, stretches))
     curve = Curve(
         family,
@@ -245,8 +245,8 @@ def field_family(problem: Problem, *names: str) -> Family:
     return lambda *values: changed(**dict(zip(names, values, strict=True)))
 
 
-def serving(orbit: Shot, family: Family, limits: Limits) -> Shot:
-    """Return an orbit in the coordinates that the problems of a family need."""
+def in_coordinates_of(orbit: Shot, family: Family, limits: Limits) -> Shot:
+    """Return an orbit in the coordinates that the problems of a family need within its limits."""
     if isinstance(orbit, Orbit):
         for corner in product(*limits):
             with contextlib.suppress(InputError):

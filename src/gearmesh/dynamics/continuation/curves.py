@@ -33,9 +33,18 @@ ASTRAY = 0.02
 """Largest distance between a point and where a polynomial through its neighbours predicts it, as a
 share of the distance of the nearest two. A point farther away may belong to another branch."""
 
-
-_CLOSE = 1e-6  # distance at which no other branch is told apart
+_CLOSE = 1e-6  # distance, in y_st, at which two orbits are not told apart
 _ANYWHERE = -math.inf, math.inf
+
+
+def _cubic(left: Point, right: Point, normal: np.ndarray, share: float) -> np.ndarray:
+    """Return a place on the cubic polynomial through two points, with their tangents."""
+    apart, rest = right.place - left.place, 1.0 - share
+    length = float(normal @ apart) * share * rest
+    ahead, behind = length / (left.tangent @ normal), length / (right.tangent @ normal)
+    bend = rest * ahead * left.tangent - share * behind * right.tangent
+    place: np.ndarray = left.place + share * share * (3.0 - 2.0 * share) * apart + bend
+    return place
 
 
 def unit_of(low: float, high: float) -> float:
@@ -158,12 +167,12 @@ class Curve:
 
     def beside(self, point: Point, length: float) -> Point:
         """Return the point at a small distance along the tangent, where the curve still is."""
-        return self._there(point.place + length * point.tangent, point.tangent)
+        return self._evaluated(point.place + length * point.tangent, point.tangent)
 
-    def _there(self, place: np.ndarray, along: np.ndarray) -> Point:
-        """Return the point at a place of the curve, without any correction."""
+    def _evaluated(self, place: np.ndarray, along: np.ndarray) -> Point:
+        """Return the point at a place that is known to be on the curve, without a correction."""
         if self.tracer is not None:
-            return self.tracer.there(place, along)
+            return self.tracer.evaluated(place, along)
         return self._with_tangent(place, self._orbit(place), along)
 
     def _with_tangent(self, place: np.ndarray, orbit: Shot, along: np.ndarray) -> Point:
@@ -185,7 +194,7 @@ class Curve:
         try:
             return self.point(place, up, up)
         except NoOrbit:  # a fold, where the parameter does not tell one orbit from the next
-            along = self._there(place, up).tangent
+            along = self._evaluated(place, up).tangent
             return self.point(place, along, along)
 
     def moved_to(self, phase: float, point: Point) -> tuple["Curve", Point]:
@@ -209,19 +218,35 @@ class Curve:
         NoOrbit
             If there is none near the predicted place.
         """
-        apart, rest = right.place - left.place, 1.0 - share
-        length = float(normal @ apart) * share * rest
-        ahead, behind = length / (left.tangent @ normal), length / (right.tangent @ normal)
-        bend = rest * ahead * left.tangent - share * behind * right.tangent
-        place = left.place + share * share * (3.0 - 2.0 * share) * apart + bend
+        return self._near(_cubic(left, right, normal, share), normal, left, right)
+
+    def crossing(self, left: Point, right: Point, value: float, i: int) -> Point:
+        """Return the point between two known points at which parameter `i` has a value.
+
+        The parameter must not turn between the two.
+
+        Raises
+        ------
+        NoOrbit
+            As of `between`.
+        """
+        axis = len(left.place) - len(self.units) + i
+        normal = np.eye(len(left.place))[axis]
+        share = (value - left.values[i]) / (right.values[i] - left.values[i])
+        place = _cubic(left, right, normal, share)
+        place[axis] = value / self.units[i]
+        return self._near(place, normal, left, right)
+
+    def _near(self, place: np.ndarray, normal: np.ndarray, left: Point, right: Point) -> Point:
+        """Return the point near a place that is predicted between two known points."""
         found = self.point(place, normal, left.tangent)
-        away = float(np.linalg.norm(found.place - place))
-        if away > max(ASTRAY * float(np.linalg.norm(apart)), _CLOSE):
+        apart, away = right.place - left.place, found.place - place
+        if float(np.linalg.norm(away)) > max(ASTRAY * float(np.linalg.norm(apart)), _CLOSE):
             raise NoOrbit("the corrector leads away from the branch")
         return found
 
     def towards(self, left: Point, right: Point) -> Point:
-        """Return a point at most half of the way between two, by a step from the left one.
+        """Step from the left of two points towards the right one, at most half of the way.
 
         Raises
         ------

@@ -6,7 +6,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from gearmesh.dynamics.continuation.branches import field_family, serving
+from gearmesh.dynamics.continuation.branches import field_family, in_coordinates_of
 from gearmesh.dynamics.continuation.curves import Curve, Family, unit_of
 from gearmesh.dynamics.continuation.points import Point
 from gearmesh.dynamics.continuation.special_points import SpecialPoint, search
@@ -97,7 +97,7 @@ def follow_special(
     values = values or tuple(float(getattr(problem, name)) for name in parameters)
     for name, value, (low, high) in zip(parameters, values, limits, strict=True):
         check_inside(name, value, low, high)
-    orbit = serving(point.orbit, family, limits)
+    orbit = in_coordinates_of(point.orbit, family, limits)
     moved = orbit.at_phase(clear_phase(orbit, over_nu=False))
     units = tuple(unit_of(low, high) for low, high in limits)
     phase = moved.problem.initial_phase

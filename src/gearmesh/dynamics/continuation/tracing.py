@@ -63,7 +63,7 @@ class Tracer:
         """Return the point as of `Curve.point`."""
         return self._landed(place, normal, along, MOST_CORRECTIONS)
 
-    def there(self, place: np.ndarray, along: np.ndarray) -> Point:
+    def evaluated(self, place: np.ndarray, along: np.ndarray) -> Point:
         """Return the point at a place, without any correction."""
         return self._landed(place, along, along, 0)
 
@@ -98,7 +98,7 @@ class Tracer:
         limits: tuple[float, float],
         most: int = _MOST_STEPS,
     ) -> tuple["Track", float]:
-        """Return the next points and the next length as of `Curve.ahead`, after `most` steps."""
+        """Return the next points, at most `most`, and the next length as of `Curve.ahead`."""
         rows, events, length = trace(
             self.stated,
             point.place,
@@ -210,7 +210,8 @@ class _Traced:
 
 def _residuals(rows: np.ndarray) -> np.ndarray:
     """Return |P^n(x) - x| of each row."""
-    columns = rows.T  # many times as long as they are many, so NumPy takes the columns at once
+    # NumPy is three times as fast with four long rows as with many short ones.
+    columns = rows.T
     defects = np.subtract(columns[curves.END : curves.JACOBIAN], columns[:SIZE], order="C")
     residuals: np.ndarray = np.abs(defects).max(axis=0)
     return residuals

@@ -3,7 +3,7 @@
 import contextlib
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from functools import cache, partial
+from functools import cache
 from itertools import pairwise
 from typing import NamedTuple
 
@@ -152,7 +152,7 @@ def points_of(pieces: list[Piece]) -> list[Point]:
 def _walk(curve: Curve, start: Point, limits: Limits, longest: float) -> Walk:
     """Follow the branch from `start`, along its tangent."""
     point, pieces = start, [Piece(curve, curve.track(start))]
-    length, repeats = _FIRST_STEP * longest, None
+    length, origin, turned = _FIRST_STEP * longest, None, False
     while sum(len(piece.points) for piece in pieces) < MOST_POINTS:
         if _leaves(curve, point, limits):
             return Walk(pieces, LIMIT, [])
@@ -169,14 +169,14 @@ def _walk(curve: Curve, start: Point, limits: Limits, longest: float) -> Walk:
         ahead, reason = _up_to_end(curve, point, ahead, limits)
         points = chained(pieces[-1].points, ahead)
         first = len(points) - len(ahead) - 1
-        if repeats is None and ahead:
-            first, repeats = first + 1, cache(partial(_repeats, ahead[0], curve.phase))
-        if repeats is not None:
-            closed = _closed(curve, points, first, repeats(curve.periods, curve.phase))
-            if closed is not None:
-                pieces[-1] = Piece(curve, closed)
-                pieces[0] = Piece(pieces[0].curve, pieces[0].points[1:])
-                return Walk(pieces, CLOSED, [])
+        if origin is None and ahead:  # a closed branch begins behind the start: see `joined`
+            first, origin = first + 1, _Origin(curve, ahead[0])
+        turned = turned or _turns(curve, points)
+        closed = _closed(curve, points, first, origin) if origin and turned else None
+        if closed is not None:
+            pieces[-1] = Piece(curve, closed)
+            pieces[0] = Piece(pieces[0].curve, pieces[0].points[1:])
+            return Walk(pieces, CLOSED, [])
         pieces[-1] = Piece(curve, points)
         if reason:
             flip = _flip_at_end(curve, pieces[-1].points[-1]) if reason == HALVED else []
@@ -272,35 +272,45 @@ def _flip_at_end(curve: Curve, point: Point) -> list[tuple[str, Point]]:
     return []
 
 
-def _repeats(point: Point, known: float, periods: int, phase: float) -> np.ndarray:
-    """Return the places of an orbit at a phase of each of its mesh periods, shape (n, k + m).
+class _Origin:
+    """The point at which a closed branch begins, in each of the mesh periods of its orbit."""
 
-    The point holds the place at a known phase.
-    """
-    if periods == 1 and phase == known:
-        return point.place[None]
-    orbit = point.orbit.at_phase(phase)
-    states, step = [orbit.state], orbit.repeats_after
-    for _ in range(step, periods, step):
-        states.append(states[-1] + orbit.shot(orbit.problem, states[-1], step).defect)
-    values = point.place[orbit.state.size :]
-    return np.array([np.append(state, values) for state in states])
+    def __init__(self, curve: Curve, point: Point) -> None:
+        self.phase, self.point = curve.phase, point
+        self.places = cache(self._places)
+
+    def _places(self, periods: int, phase: float) -> np.ndarray:
+        """Return the places of the orbit at a phase of each mesh period, shape (n, k + m)."""
+        if periods == 1 and phase == self.phase:
+            return self.point.place[None]
+        orbit = self.point.orbit.at_phase(phase)
+        states, step = [orbit.state], orbit.repeats_after
+        for _ in range(step, periods, step):
+            states.append(states[-1] + orbit.shot(orbit.problem, states[-1], step).defect)
+        values = self.point.place[orbit.state.size :]
+        return np.array([np.append(state, values) for state in states])
+
+
+def _turns(curve: Curve, points: Sequence[Point]) -> bool:
+    """Return whether the first parameter turns between points, as it does on a closed branch."""
+    slopes = geometry(points)[1][:, -len(curve.units)]
+    return bool(slopes.min() <= 0.0 <= slopes.max())
 
 
 def _closed(
-    curve: Curve, points: Sequence[Point], first: int, repeats: np.ndarray
+    curve: Curve, points: Sequence[Point], first: int, origin: _Origin
 ) -> Sequence[Point] | None:
-    """Return the points up to where the curve meets an orbit again, or None if it does not.
+    """Return the points up to where the curve meets its origin again, or None if it does not.
 
     Parameters
     ----------
     points : sequence of Point
         Successive points of the curve.
     first : int
-        The point from which on the orbit is looked for. It may be this orbit itself.
-    repeats : ndarray, shape (n, k + m)
-        Places of the orbit.
+        The point from which on the origin is looked for. It may be the origin itself.
+    origin : _Origin
     """
+    repeats = origin.places(curve.periods, curve.phase)
     places, tangents = geometry(points[first:])
     if len(places) < 2:
         return None

@@ -77,14 +77,12 @@ def passages(
     curve: Curve, left: Point, right: Point, value: float, beside: Beside, i: int = 0
 ) -> Iterator[Point]:
     """Yield the points between two others at a value of parameter `i`, which may turn there."""
-    axis = len(left.place) - len(curve.units) + i
-    slopes = left.tangent[axis], right.tangent[axis]
+    k = len(left.place) - len(curve.units) + i
+    slopes = left.tangent[k], right.tangent[k]
     low, high = sorted((left.values[i], right.values[i]))
     if low < value < high and min(map(abs, slopes)) > STEEP and slopes[0] * slopes[1] > 0.0:
-        share = (value - left.values[i]) / (right.values[i] - left.values[i])
         with contextlib.suppress(NoOrbit):
-            normal = np.eye(len(left.place))[axis]
-            yield _moved(curve, curve.between(left, right, normal, share), value, i)
+            yield curve.crossing(left, right, value, i)
             return
 
     def away(point: Point) -> float:
@@ -93,14 +91,13 @@ def passages(
     least = _MOVED * max(abs(away(left)), abs(away(right)))
     for _, point, _ in zeros(curve, left, right, Test("passage", away), beside):
         if abs(away(point)) <= least:
-            yield _moved(curve, point, value, i)
+            yield _moved(curve, point, value, k)
 
 
-def _moved(curve: Curve, point: Point, value: float, i: int) -> Point:
-    """Return a point of a curve, moved by a rounding error to a value of parameter `i`."""
-    place, normal = point.place.copy(), np.zeros(len(point.place))
-    axis = len(place) - len(curve.units) + i
-    place[axis], normal[axis] = value / curve.units[i], 1.0
+def _moved(curve: Curve, point: Point, value: float, k: int) -> Point:
+    """Return a point of a curve, moved by a rounding error to a value of the parameter at `k`."""
+    place, normal = point.place.copy(), np.eye(len(point.place))[k]
+    place[k] = value / curve.units[k - len(place)]
     try:
         return curve.point(place, normal, point.tangent)
     except NoOrbit:  # at a fold itself
@@ -141,8 +138,9 @@ def _may_dip(
 def _locate(curve: Curve, left: Point, right: Point, test: Test) -> Point:
     """Return the point between two others where a test function passes 0.
 
-    A polynomial through the values that are known nearby predicts the root, again and again. If
-    the curve cannot be followed up to the root, the point is the nearest to it that is known.
+    A polynomial predicts the root from the values that are known nearby. The value at the predicted
+    root improves the polynomial, and so on. If the curve cannot be followed up to the root, the
+    known point nearest to it is returned.
     """
     normal, length = left.tangent, length_between(left, right)
     low = _Known(0.0, test.function(left), left)
@@ -181,10 +179,10 @@ def _locate(curve: Curve, left: Point, right: Point, test: Test) -> Point:
 
 
 def _inside(curve: Curve, left: Point, right: Point, normal: np.ndarray, share: float) -> Point:
-    """Return a point between two others, if possible at a share of the way, as `Curve.between`.
+    """Return a point between two others: at a share of the way, as `Curve.between`, if possible.
 
-    Where the curve has a kink, as at a grazing, polynomials across it predict badly. A step from
-    the left point is then at most half of the way.
+    At a grazing the curve may have a kink, across which polynomials predict badly. The point is
+    then reached by a step from the left one.
     """
     try:
         return curve.between(left, right, normal, share)

@@ -11,13 +11,12 @@ from dataclasses import replace
 
 import numpy as np
 
-from gearmesh.errors import InputError
 from gearmesh.model.contact import regime_of
 from gearmesh.model.problem import Problem
 from gearmesh.solvers.lanes.operations import WIDEST
 from gearmesh.solvers.reduced.measures import SAMPLED
 from gearmesh.solvers.reduced.records import RUN, SUMMARY
-from gearmesh.solvers.reduced.runs import is_reducible, run_row, sweep_all
+from gearmesh.solvers.reduced.runs import run_row, sweep_all
 from gearmesh.solvers.response import EXTREMUM, OK
 
 TOLERANCE = 1e-10
@@ -36,11 +35,6 @@ def laws_of(problems: Sequence[Problem], tolerance: float = TOLERANCE) -> np.nda
     InputError
         If only the general solver serves one of them.
     """
-    if not all(map(is_reducible, problems)):
-        raise InputError(
-            "pair: found terms that only the general solver knows; allowed are those of the "
-            "reduced system, because many runs are integrated together"
-        )
     return np.array([run_row(problem, tolerance, 0) for problem in problems]).view(RUN)[:, 0]
 
 

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 from numba import njit
 
+from gearmesh.errors import InputError
 from gearmesh.model.contact import (
     CONTACT_LOSS,
     INVERSE_MESH,
@@ -69,6 +70,18 @@ def is_reducible(problem: Problem) -> bool:
     if problem.final_nu is not None:
         return False
     return not (problem.has_run_out or problem.deviation or problem.stiffness_harmonics)
+
+
+def check_reducible(problem: Problem) -> None:
+    """Raise `InputError` if only the general solver serves a problem.
+
+    The equations of this package would leave out its terms without a word.
+    """
+    if not is_reducible(problem):
+        raise InputError(
+            "pair: found terms that only the general solver knows; allowed are those of the "
+            "reduced system"
+        )
 
 
 def integrate(
@@ -140,7 +153,8 @@ def _runs(
 
 
 def run_row(problem: Problem, tolerance: float, samples_per_period: int) -> list[float]:
-    """Return `problem` in the form that the compiled sweep takes, a row of `RUN`."""
+    """Return a reducible problem in the form that the compiled sweep takes, a row of `RUN`."""
+    check_reducible(problem)
     period, parts = problem.period, segments(problem)
     friction = problem.friction_coefficient * math.tan(problem.pressure_angle)
     rest = [0.0] * (MAX_SEGMENTS - len(parts))

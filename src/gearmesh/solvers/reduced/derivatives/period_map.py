@@ -13,6 +13,7 @@ from gearmesh.solvers.compilation import persistent
 from gearmesh.solvers.limits import highest_frequency
 from gearmesh.solvers.reduced.derivatives import curves, variational
 from gearmesh.solvers.reduced.derivatives.deviations import DEVIATIONS, ORDER, SIZE
+from gearmesh.solvers.reduced.runs import check_reducible
 
 TOLERANCE = 1e-16
 """Bound of the last terms of a step, relative to the state: rounding decides the accuracy."""
@@ -114,7 +115,8 @@ def passage(
 
 
 def statement(problem: Problem, periods: int = 1, share: float = 1.0) -> Statement:
-    """Return a problem and a number of mesh periods in the form that the compiled code takes."""
+    """Return a reducible problem and a number of mesh periods as the compiled code takes them."""
+    check_reducible(problem)
     parts = segments_of(problem)
     return (
         parts,
